@@ -44,7 +44,7 @@ namespace collide {
 /// A simulation is for one thread at a time.
 template <class Detector, class... Effect>
 class simulation {
-  static_assert(detail::is_detector<Detector>::value,
+  static_assert(detail::is_detector<Detector>,
                 "collide: the first parameter of a simulation is a detector, such as detector<bucket>");
 
  public:
@@ -331,12 +331,11 @@ class simulation {
   friend double largest_time_step(simulation<D, E...> const&);
 
   static constexpr bool sweeps = effects_type::any_mesh_contact && !detail::is_discrete<narrow_phase, S>;
-  static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S>::value || ...);
+  static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S> || ...);
   /// Effects other than sources that may make particles in their `begin_step`.
   template <class E>
-  static constexpr bool may_make =
-      !detail::is_source<E> && detail::has_begin_step<E, execution_space, state_type, S>::value &&
-      detail::contains<typename detail::writes_of<E>::type, alive>;
+  static constexpr bool may_make = !detail::is_source<E> && detail::has_begin_step<E, execution_space, state_type, S> &&
+                                   detail::contains<detail::writes_of<E>, alive>;
   static constexpr bool may_be_made = (may_make<Effect> || ...);
   template <class Triangles>
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
@@ -360,7 +359,7 @@ class simulation {
 
   /// Finds out by which radii effects limit steps. A source's particles are of material 0. May wait.
   COLLIDE_COLD void know_smallest() {
-    constexpr bool changes_materials = (detail::contains<typename detail::writes_of<Effect>::type, material> || ...);
+    constexpr bool changes_materials = (detail::contains<detail::writes_of<Effect>, material> || ...);
     smallest_ = detail::smallest_radii_of(*this, radii_, !changes_materials);
     if (double const own = static_cast<double>(effects_.source_radius()); own > 0)
       smallest_.of_material[0] = detail::min(smallest_.of_material[0], own);
@@ -406,7 +405,7 @@ class simulation {
     if constexpr (may_make<E>)
       space_.for_each(state_.size, detail::copy_values<std::uint8_t>{state_.at(alive{}), was_there_.data()});
     detail::begin_step_of<E>(effects_, space_, state_, dt);
-    if constexpr (may_make<E>) begin_anew<typename detail::writes_of<E>::type>();
+    if constexpr (may_make<E>) begin_anew<detail::writes_of<E>>();
   }
   template <class Written>
   void begin_anew() {

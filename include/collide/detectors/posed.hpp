@@ -46,8 +46,7 @@ namespace collide {
 /// \tparam Detector  a `detector` for spheres at rest
 template <class Detector>
 class posed {
-  static_assert(detail::is_detector<Detector>::value,
-                "collide: posed is of a detector, such as posed<detector<bucket>>");
+  static_assert(detail::is_detector<Detector>, "collide: posed is of a detector, such as posed<detector<bucket>>");
   static_assert(detail::is_discrete<typename Detector::narrow_phase, typename Detector::scalar>,
                 "collide: posed is for spheres that rest: bodies and spheres that move in a step are those of a "
                 "simulation");

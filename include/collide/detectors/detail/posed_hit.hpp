@@ -38,7 +38,7 @@ class hit<detail::in_frames<NarrowPhase>, S> {
   /// Contact of the pair, computed by this call in the frame of the body.
   COLLIDE_HD collide::contact<S> contact() const {
     static_assert(
-        detail::has_contact<NarrowPhase, S>::value,
+        detail::has_contact<NarrowPhase, S>,
         "collide: contacts need a narrow phase with a static member contact_of(triangle, sphere) that returns a "
         "contact");
     int const frame = mesh_.frame_of(triangle);
