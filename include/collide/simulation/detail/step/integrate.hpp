@@ -22,7 +22,7 @@ namespace collide::detail {
 template <class Context, class Particle>
 COLLIDE_HD_INLINE auto first_kick([[maybe_unused]] Particle const& p) {
   if constexpr (contains<typename Particle::list, held>) {
-    return p[held{}] == 1 ? Context::kick_before + Context::kick_after : Context::kick_before;
+    return p[held{}] == owes_a_kick ? Context::kick_before + Context::kick_after : Context::kick_before;
   } else {
     return Context::kick_before;
   }
@@ -68,9 +68,9 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
   }
   if constexpr (contains<typename Particle::list, held>) {
     if constexpr (Context::effects_type::adheres) {
-      if (p[held{}] == 2 && is_stuck(p[adhered{}])) return;  // it stuck all the time
+      if (p[held{}] == stuck_all_along && is_stuck(p[adhered{}])) return;  // it stuck all the time
     }
-    p[held{}] = holds;
+    p[held{}] = holds ? owes_a_kick : std::uint8_t{0};
   }
 }
 
@@ -78,7 +78,7 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
 template <class Context, class Particle>
 COLLIDE_HD_INLINE auto last_kick([[maybe_unused]] Particle const& p) {
   if constexpr (contains<typename Particle::list, held>) {
-    return p[held{}] == 1 ? typename Context::scalar(0) : Context::kick_after;
+    return p[held{}] == owes_a_kick ? typename Context::scalar(0) : Context::kick_after;
   } else {
     return Context::kick_after;
   }
@@ -92,7 +92,7 @@ COLLIDE_HD_INLINE void end_particle(Context const& context, Particle& p) {
     if constexpr (contains<typename Particle::list, held>) by = p[held{}];
     if (by == 0) context.effects.accelerate(p, Context::kick_after * context.dt);
     if constexpr (Context::effects_type::adheres) {
-      if (by == 2) {
+      if (by == stuck_all_along) {
         Particle next = p;
         context.effects.accelerate(next, Context::kick_after * context.dt);
         record_stuck(context, p, p[velocity{}] - next[velocity{}]);
