@@ -377,7 +377,7 @@ def included(sources):
 
 
 def guarded(program):
-    """What a program is compiled from, and what makes the rows that it judges by."""
+    """The files that a program is compiled from, and those that make the rows that it judges by."""
     tests = ROOT / "tests"
     source = (tests / "flags" if program == "verdicts" else HERE) / f"{program}.cpp"
     oracle = [*tests.glob("oracle/scene.*"), *tests.glob("oracle/exact.*"), *tests.glob("unit/narrow_phase/near_contact.*")]

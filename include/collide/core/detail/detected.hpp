@@ -1,5 +1,5 @@
 /// \file
-/// Whether types have a member, and its type.
+/// Detection of members: true where a type has one, and what it is.
 #pragma once
 
 #include <type_traits>
