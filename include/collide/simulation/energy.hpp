@@ -70,6 +70,7 @@ template <class Detector, class... Effect>
 struct particles_on_host {
   using list = typename simulation<Detector, Effect...>::columns;
   using S = typename Detector::scalar;
+  static_assert(!contains<list, in_clump>, "collide: energy, stress and contact_report do not know clumps yet");
 
   std::vector<S> x, v, w, r;
   std::vector<std::uint8_t> is_there, solid;
