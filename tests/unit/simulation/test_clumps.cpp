@@ -30,3 +30,9 @@ TEST_CASE("clumps: the same bits in every space, and after a checkpoint") {
   tests::check_same_clumps<double>(blocks());
   tests::check_same_clumps<float>(blocks());
 }
+
+TEST_CASE("clumps: they press with their weight, go with a belt, and meet across the sides of a box") {
+  tests::check_weight_of_clumps<double>(host(1));
+  tests::check_weight_of_clumps<float>(host(1));
+  tests::check_clumps_in_boxes(host(1));
+}
