@@ -316,8 +316,8 @@ void check_weight_of_clumps(Space const& space) {
   collide::body belt{0, w.corners.size() / 9, {}};
   belt.motion.belt[1] = 0.5;
   one.made.set_mesh(collide::triangle_soup(corners.data(), corners.size() / 9), {belt});
-  collide::set_clumps(one.made, {shape}, {clump_at(0, -1, 0.2)});
-  one.made.steps(5000, S(dt));
+  collide::set_clumps(one.made, {shape}, {clump_at(0, -2, 0.2)});
+  one.made.steps(20000, S(dt));
   sums.clear(space);
   one.made.steps(500, S(dt));
   double pressed = 0;
@@ -326,7 +326,7 @@ void check_weight_of_clumps(Space const& space) {
   double const close = sizeof(S) == 4 ? 1e-3 : 1e-6;
   CHECK(pressed == doctest::Approx(weight).epsilon(close));
   CHECK(sums.read(space)[0].linear[2] == doctest::Approx(-weight * 500 * dt).epsilon(close));
-  CHECK(one.speed(0).y() == doctest::Approx(0.5).epsilon(close));
+  CHECK(one.speed(0).y() == doctest::Approx(0.5).epsilon(1e-3));
   CHECK(shape.volume < 3 * collide::detail::sphere_mass(1.0, 0.2) * 0.9);
 }
 
