@@ -30,7 +30,7 @@ inline void turn_at_random(double (&rotation)[4], std::uint64_t number) {
   for (int half = 0; half < 2; ++half) {
     for (std::uint64_t trial = 0;; ++trial) {  // a point in the unit disc
       std::uint64_t const n = (number << 20) + (std::uint64_t(half) << 18) + 2 * trial;
-      for (int k = 0; k < 2; ++k) found[2 * half + k] = 2 * detail::random_part(n + std::uint64_t(k)) - 1;
+      for (int k = 0; k < 2; ++k) found[2 * half + k] = 2 * detail::random_fraction(n + std::uint64_t(k)) - 1;
       squares[half] = found[2 * half] * found[2 * half] + found[2 * half + 1] * found[2 * half + 1];
       if (squares[half] < 1 && squares[half] > 0) break;
     }
