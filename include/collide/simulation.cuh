@@ -361,7 +361,7 @@ class simulation {
     }
   }
 
-  /// What is assigned to clumps is so of their spheres.
+  /// Gives the spheres of clumps what has been assigned to these.
   template <class Column>
   void assign_clumps() {
     static_assert(!detail::contains<collide::columns<position, velocity, angular_velocity, radius>, Column>,

@@ -63,7 +63,7 @@ inline bool are_disjoint(std::vector<sphere<double>> const& spheres) {
   return true;
 }
 
-/// Those of spheres that do not overlap.
+/// The integrals over spheres that do not overlap.
 inline solid_moments moments_of_disjoint(std::vector<sphere<double>> const& spheres) {
   solid_moments m;
   for (auto const& s : spheres) {
@@ -74,8 +74,8 @@ inline solid_moments moments_of_disjoint(std::vector<sphere<double>> const& sphe
   return m;
 }
 
-/// Those of a union: exact along lines in the direction of x, of which there are `lines` times as many, by the midpoint
-/// rule.
+/// The integrals over a union of spheres: exact along each of `lines` times `lines` lines in the direction of x, by the
+/// midpoint rule across.
 inline solid_moments moments_of_union(std::vector<sphere<double>> const& spheres, int lines) {
   double low[3], high[3];
   for (int k = 1; k < 3; ++k) {

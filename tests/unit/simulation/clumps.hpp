@@ -13,6 +13,7 @@
 #include <collide/effects/integrators.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/simulation/checkpoint.hpp>
+#include <collide/simulation/energy.hpp>
 #include <collide/simulation/place_clumps.hpp>
 
 #include "simulation/simulation.hpp"
@@ -389,6 +390,40 @@ struct heap_of_clumps {
   }
   static scene make(Space const& space) { return scene(space, tray(), gravity{}, law_of<law>(2e5, 0.4, 0.5), {}, {}); }
 };
+/// Elastic, smooth clumps on a floor keep their energy, in which each point of a clump counts once.
+template <class Space>
+void check_energy_of_clumps(Space const& space) {
+  using law = granular_contact<hertz>;
+  world<double> w;
+  add_floor(w, 4, 4);
+  clumps_in<Space, double, gravity, law, collide::polydisperse> some(space, w, gravity{}, law_of<law>(1e6, 1, 0), {});
+  std::vector<placed_clump> all;
+  for (int i = 0; i < 8; ++i) {
+    all.push_back(clump_at(1.7 * (i % 2), 1.7 * (i / 2 % 2), 1.1 + 1.7 * (i / 4)));
+    all.back().shape = std::size_t(i) % 2;
+    all.back().moving.angular[i % 3] = 3;
+    collide::turn_at_random(all.back().at.rotation, std::uint64_t(i));
+  }
+  std::vector<clump_shape> const shapes{potato(), dumbbell(0.3, 0.25)};
+  collide::set_clumps(some.made, shapes, all);
+  auto const before = collide::energy(some.made);
+  double mass = 0, turns = 0;
+  for (auto const& c : all) {
+    auto const& shape = shapes[c.shape];
+    mass += 1000 * shape.volume;
+    turns += shape.volume * *std::min_element(shape.inertia, shape.inertia + 3) * 4500;
+  }
+  CHECK(before.rotational > turns);
+  CHECK(before.elastic == 0);
+  some.made.steps(5000, 1e-4);
+  auto const after = collide::energy(some.made);
+  CHECK(after.total() == doctest::Approx(before.total()).epsilon(1e-4));
+  CHECK(after.kinetic > 0.1 * before.total());
+  CHECK(after.rotational != doctest::Approx(before.rotational).epsilon(0.1));
+  CHECK(before.potential > 9.81 * mass * 1.0);
+  CHECK(before.potential < 9.81 * mass * 3.0);
+}
+
 template <class S, class Space>
 void check_same_clumps(Space const& space) {
   using on_host = heap_of_clumps<S, collide::host>;

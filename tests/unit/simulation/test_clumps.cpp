@@ -31,8 +31,4 @@ TEST_CASE("clumps: the same bits in every space, and after a checkpoint") {
   tests::check_same_clumps<float>(blocks());
 }
 
-TEST_CASE("clumps: they press with their weight, go with a belt, and meet across the sides of a box") {
-  tests::check_weight_of_clumps<double>(host(1));
-  tests::check_weight_of_clumps<float>(host(1));
-  tests::check_clumps_in_boxes(host(1));
-}
+TEST_CASE("clumps: their energy stays where nothing takes it") { tests::check_energy_of_clumps(host(1)); }
