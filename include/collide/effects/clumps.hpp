@@ -6,7 +6,7 @@
 
 namespace collide {
 
-/// Where a sphere of a clump is in the frame of the clump's principal axes, around its centre of mass.
+/// The place of a sphere of a clump in the frame of the clump's principal axes, around its centre of mass.
 struct clump_offset : detail::vector_column {};
 
 /// The centre of mass of a clump. This column and the next ones are of the clump's first sphere.

@@ -39,6 +39,27 @@ inline void turn_at_random(double (&rotation)[4], std::uint64_t number) {
   for (int k = 0; k < 4; ++k) rotation[k] = k < 2 ? found[k] : found[k] * part;
 }
 
+/// A clump in each of some spheres, of which x, y, z and the radii are given as by `fill`: with its centre of mass in the
+/// middle, as large as it fits, and turned at random, always the same for a seed below 2^24. `number` is that of the
+/// shape in the list. Clumps of the size of the shape come of spheres of the radius `shape.reach()`.
+inline std::vector<placed_clump> clumps_within(std::vector<double> const& centres, std::vector<double> const& radii,
+                                               clump_shape const& shape, std::uint64_t seed = 0,
+                                               std::size_t number = 0) {
+  std::vector<placed_clump> placed(radii.size());
+  double const reach = shape.reach();
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    placed_clump& c = placed[i];
+    c.shape = number;
+    c.scale = radii[i] / reach;
+    turn_at_random(c.at.rotation, (seed << 20) + i);
+    double const* const middle = shape.frame.position;
+    vec3<double> const arm =
+        detail::rotated(c.at.rotation, vec3<double>(middle[0] * c.scale, middle[1] * c.scale, middle[2] * c.scale));
+    for (std::size_t k = 0; k < 3; ++k) c.at.position[k] = centres[3 * i + k] - arm[int(k)];
+  }
+  return placed;
+}
+
 namespace detail {
 
 /// The columns of clumps, on the host.
