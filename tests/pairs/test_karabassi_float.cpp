@@ -24,4 +24,6 @@ static bool const list_26_is_hunted = hunt<list_26>("26", "granular_contact emit
 TEST_CASE("pairs: list 32") { check_list<list_32>(); }
 static bool const list_32_is_hunted = hunt<list_32>("32", "velocity_verlet gravity drag wind granular_contact wear clumps polydisperse lost_motion mesh_forces periodic_box");
 TEST_CASE("pairs: list 33") { check_list<list_33>(); }
-static bool const list_33_is_hunted = hunt<list_33>("33", "sleep gravity emit granular_contact wear lost reaction periodic_box");
+static bool const list_33_is_hunted = hunt<list_33>("33", "sleep gravity emit granular_contact wear contact_work lost reaction periodic_box");
+TEST_CASE("pairs: list 34") { check_list<list_34>(); }
+static bool const list_34_is_hunted = hunt<list_34>("34", "gravity sphere_contact contact_work polydisperse periodic_box lost");

@@ -39,9 +39,9 @@ inline void turn_at_random(double (&rotation)[4], std::uint64_t number) {
   for (int k = 0; k < 4; ++k) rotation[k] = k < 2 ? found[k] : found[k] * part;
 }
 
-/// A clump in each of some spheres, of which x, y, z and the radii are given as by `fill`: with its centre of mass in the
-/// middle, as large as it fits, and turned at random, always the same for a seed below 2^24. `number` is that of the
-/// shape in the list. Clumps of the size of the shape come of spheres of the radius `shape.reach()`.
+/// A clump in each of some spheres, of which x, y, z and the radii are given as by `fill`: with its centre of mass in
+/// the middle, as large as it fits, and turned at random, always the same for a seed below 2^24. `number` is that of
+/// the shape in the list. Clumps of the size of the shape come of spheres of the radius `shape.reach()`.
 inline std::vector<placed_clump> clumps_within(std::vector<double> const& centres, std::vector<double> const& radii,
                                                clump_shape const& shape, std::uint64_t seed = 0,
                                                std::size_t number = 0) {
