@@ -55,6 +55,8 @@ inline constexpr bool takes_poses = std::is_same<Find, collide::detail::find_ins
 template <class S, class Precision>
 inline constexpr bool takes_poses<collide::detail::find_nearest<S, Precision>> = true;
 template <class S, class Precision>
+inline constexpr bool takes_poses<collide::detail::find_k_nearest<S, Precision>> = true;
+template <class S, class Precision>
 inline constexpr bool takes_poses<collide::detail::find_signed_distance<S, Precision>> = true;
 
 /// Kernel functor of `for_each` over points: takes the distance out of what was found.
@@ -114,7 +116,7 @@ class mesh : public called<Space> {
   void divide(std::vector<std::pair<std::size_t, std::size_t>> const& bodies) {
     bodies_.clear();
     for (auto const& one : bodies) bodies_.push_back({one.first, one.second, {}});
-    is_built_[5] = false;
+    is_built_[5] = is_built_[6] = false;
   }
 
   std::size_t size() const { return view_.size(); }
@@ -230,7 +232,7 @@ class mesh : public called<Space> {
     } else {
       auto const k = static_cast<int>(number);
       auto* const to = each<nearest_record>(found, {n, static_cast<std::size_t>(k)}, out, numpy);
-      look(points, {}, find_k_nearest<S, exact>{farthest, k, to});
+      look(points, placed, find_k_nearest<S, exact>{farthest, k, to});
     }
     return nb::make_tuple(found, n);
   }
@@ -328,7 +330,7 @@ class mesh : public called<Space> {
       if constexpr (!needs_motion<Sink>) {
         if (!q.poses.empty()) {
           if (q.precision != "exact") refuse("precision", "of a mesh in poses is 'exact'");
-          return run_posed(spheres, q.poses, sink);
+          return run_posed(posed_, 5, spheres, q.poses, sink);
         }
         if (q.precision == "exact") return run<0>(std::get<0>(at_rest_), spheres, sink);
         if (q.precision == "single") return run<1>(std::get<1>(at_rest_), spheres, sink);
@@ -340,14 +342,19 @@ class mesh : public called<Space> {
     } else if constexpr (needs_rest<Sink>) {
       refuse("displacements", "the closest triangle is of spheres at rest: ask for impacts");
     } else {
-      if (!q.poses.empty()) refuse("displacements", "a mesh in poses takes none: use collide.Simulation");
       displacements = runtime_.keep(import_array(q.displacements, "displacements", runtime_.at()));
       auto const paths = points_of<S>(displacements, "displacements");
       if (paths.size() != points.size())
         refuse("displacements", "has " + std::to_string(paths.size()) + " rows, expected " +
                                     std::to_string(points.size()) + ", one for each centre");
       if (q.precision != "exact") refuse("precision", "spheres that move are decided exactly: 'exact'");
-      run<3>(swept_, collide::with_displacements(spheres, paths), sink);
+      auto const moving = collide::with_displacements(spheres, paths);
+      if (q.poses.empty()) return run<3>(swept_, moving, sink);
+      if constexpr (needs_motion<Sink>) {
+        run_posed(posed_swept_, 6, moving, q.poses, sink);
+      } else {
+        refuse("displacements", "of a mesh in poses are for impacts");
+      }
     }
   }
 
@@ -356,7 +363,7 @@ class mesh : public called<Space> {
   void look(collide::point_view<S> const& points, std::vector<collide::pose> const& poses, Find const& find) {
     searcher<Find> sink{find};
     if constexpr (takes_poses<Find>) {
-      if (!poses.empty()) return run_posed(points, poses, sink);
+      if (!poses.empty()) return run_posed(posed_, 5, points, poses, sink);
     }
     run<4>(nearby_, points, sink);
   }
@@ -408,15 +415,15 @@ class mesh : public called<Space> {
     return poses;
   }
 
-  template <class Spheres, class Sink>
-  void run_posed(Spheres const& spheres, std::vector<collide::pose> const& poses, Sink& sink) {
+  template <class Detector, class Spheres, class Sink>
+  void run_posed(Detector& posed, std::size_t number, Spheres const& spheres, std::vector<collide::pose> const& poses,
+                 Sink& sink) {
     without_gil const others_run;
-    posed_.space() = runtime_.space();
-    if (!is_built_[5]) {
-      posed_.build(view_, bodies_.empty() ? std::vector<collide::body>{{0, view_.size(), {}}} : bodies_);
-      is_built_[5] = true;
-    }
-    posed_.query(spheres, poses, sink);
+    posed.space() = runtime_.space();
+    if (!is_built_[number])
+      posed.build(view_, bodies_.empty() ? std::vector<collide::body>{{0, view_.size(), {}}} : bodies_);
+    is_built_[number] = true;
+    posed.query(spheres, poses, sink);
   }
 
   template <class Check>
@@ -472,10 +479,11 @@ class mesh : public called<Space> {
   swept swept_{runtime_.space()};
   collide::detector<collide::bvh, collide::karabassi<>, Space, S> nearby_{runtime_.space()};
   collide::posed<collide::detector<collide::bvh, collide::karabassi<>, Space, S>> posed_{runtime_.space()};
+  collide::posed<swept> posed_swept_{runtime_.space()};
   std::vector<collide::body> bodies_;
   bool is_set_ = false;
   double pairs_a_sphere_ = 0;  ///< of the last query
-  std::array<bool, 6> is_built_{};
+  std::array<bool, 7> is_built_{};
 };
 
 }  // namespace collide_python
