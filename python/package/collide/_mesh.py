@@ -509,11 +509,6 @@ class Mesh:
         found = function(stream, what, centres, *asked, [] if poses is None else _rows(poses), results)
         if kind is int:
             return found
-        if kind is bool or kind is float:
-            if out is not None:
-                return found
-            found = library.array(found, stream)
-            return library.flags(found) if kind is bool else found
         if kind is Csr:
             return Csr(*(library.array(a, stream) for a in found))
         records, size, *total = found
@@ -521,6 +516,10 @@ class Mesh:
             records = library.array(records, stream)
         elif size < len(out):
             records = out[:size]
+        if kind is float or (kind is bool and out is not None):
+            return records
+        if kind is bool:
+            return library.flags(records)
         return kind(library, records, self._is_wide, size, *total)
 
 
