@@ -197,7 +197,7 @@ class Mesh:
     Other Python threads run while a call works; two meshes may be used by two threads at once, calls to one mesh wait
     for each other. A call from within another one to the same mesh, as from a signal's handler, is an `Error`. In a forked
     process calls on the host use one thread; calls on a GPU are an `Error`, and so is a mesh that another thread was using
-    at the fork. Ctrl-C ends a call on the host within a second, but for a sort of 10^8 pairs. Pickle and copy.deepcopy copy
+    at the fork. Ctrl-C ends a call on the host within a second, except for a sort of 10^8 pairs. Pickle and copy.deepcopy copy
     the arrays. On a GPU work is put on the current stream of the library that the centres are of, and a call waits only as
     far as it must read a number back: `any` with one radius does not, after a first call.
     """
