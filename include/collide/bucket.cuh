@@ -193,16 +193,26 @@ class bucket::index {
     given_ = serves ? detail::wanted_grids<S>{radius, 1} : detail::wanted_grids<S>{};
   }
 
-  /// Makes the grids that the spheres need, unless they are there, and what else the next query needs of the mesh.
-  template <class Space>
-  void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
-    carry_out(space, options, spheres, plan_query(space, options, spheres));
+  /// Makes the grids that the spheres need, unless they are there.
+  template <class Space, class Spheres>
+  void plan(Space& space, bucket const& options, Spheres const& spheres) {
+    detail::query_plan<S> const needed = plan_query(space, options, spheres);
+    if (needed.makes_grids || needed.asks_radii) make_grids(space, options, needed, spheres);
+    order_ = needed.order;
   }
 
-  /// Makes what spheres that move need of the mesh.
+  /// Makes the grids that the spheres need, and enters the triangles or sorts the spheres into their cells.
+  template <class Space>
+  void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
+    plan(space, options, spheres);
+    fill(space, options, spheres);
+  }
+
+  /// The same for spheres that move.
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
-    carry_out(space, options, spheres, plan_query(space, options, spheres));
+    plan(space, options, spheres);
+    fill(space, options, detail::swept_bounding_spheres<S>{spheres, grids_.asked.reach});
   }
 
   /// Makes room for queries of up to so many spheres.
@@ -217,9 +227,7 @@ class bucket::index {
   std::uint64_t expected_hits([[maybe_unused]] Space& space,
                               [[maybe_unused]] detail::sphere_view_for<NarrowPhase, S> const& spheres) {
     if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (sort_if_planned(space, spheres)) {
-        return bins_.template expected_hits<NarrowPhase>(space, spheres.size());
-      }
+      if (sorts_spheres()) return bins_.template expected_hits<NarrowPhase>(space, spheres.size());
     }
     return 0;
   }
@@ -229,7 +237,7 @@ class bucket::index {
   void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
     using pipeline = detail::candidate_pipeline<S, NarrowPhase, Output>;
     if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (sort_if_planned(space, spheres)) return bins_.query(space, pipeline{mesh_, spheres, output});
+      if (sorts_spheres()) return bins_.query(space, pipeline{mesh_, spheres, output});
     }
     detail::bucket_query<S, NarrowPhase, Output> kernel{pipeline{mesh_, spheres, output, measures_.boxes()}, ref_, 0};
     kernel.choose_grid_size(space, spheres.size());
@@ -346,27 +354,17 @@ class bucket::index {
   /// A grid of its own saves so many spheres less time than it takes to fill.
   std::size_t fewest_of_grid() const { return 2 * mesh_.size(); }
 
-  /// Makes what a plan needs of the mesh.
-  template <class Space, class Spheres>
-  void carry_out(Space& space, bucket const& options, Spheres const& spheres, detail::query_plan<S> const& plan) {
-    if (plan.makes_grids || plan.asks_radii) make_grids(space, options, plan, spheres);
-    ++queries_;
-    order_ = plan.order;
-    if constexpr (bucket_tuning<Space>::bins_spheres) bins_.clear();
-    if (order_ == detail::query_order::sphere_major) fill_grids(space, options);
-  }
+  /// True if triangles look for spheres that are sorted into the cells.
+  bool sorts_spheres() const { return order_ == detail::query_order::triangle_major; }
 
-  /// True if the plan is that triangles look for spheres; these are sorted into the cells then.
+  /// Sorts the spheres into the cells, or enters the triangles, as planned.
   template <class Space, class Spheres>
-  bool sort_if_planned(Space& space, Spheres const& spheres) {
-    if (order_ != detail::query_order::triangle_major) return false;
-    if (!bins_.empty()) return true;
-    if constexpr (std::is_same<Spheres, sphere_view<S>>::value) {
-      bins_.sort(space, spheres);
-    } else {
-      bins_.sort(space, detail::swept_bounding_spheres<S>{spheres, grids_.asked.reach});
+  void fill(Space& space, bucket const& options, [[maybe_unused]] Spheres const& spheres) {
+    ++queries_;
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (sorts_spheres()) return bins_.sort(space, spheres);
     }
-    return true;
+    fill_grids(space, options);
   }
 
   /// Makes the grids of a plan, as many as the budget allows, for these spheres. Where their radii tell how far they
