@@ -208,7 +208,7 @@ class bucket::index {
     fill(space, options, spheres);
   }
 
-  /// The same for spheres that move.
+  /// Makes the grids that spheres which move need, and enters the triangles or sorts the spheres.
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
     plan(space, options, spheres);
