@@ -90,7 +90,7 @@ struct grid_set {
   }
 };
 
-/// What grids are held to, as `bucket` has it.
+/// The width of cells and the bytes of memory that grids are held to, as `bucket` has them.
 struct grid_limits {
   double cell_width = 0;
   std::size_t memory_budget = 0;
