@@ -113,7 +113,9 @@ inline overlap_item* overlap_items_of_thread(std::size_t n) {
 }
 #endif
 
-/// Kernel functor of `for_each` over as many as there are particles: those on the list press on the mesh.
+/// Kernel functor of `for_each` over `threads`, at least as many as there are particles: those on the list press on the
+/// mesh. Where these are few, they are apart: threads that run together wait for the one that has most to do, and a
+/// device has room for many such groups.
 template <class S, class Effects, class Triangles, class Memory>
 struct press_on_mesh {
   using effects_type = Effects;
@@ -129,9 +131,13 @@ struct press_on_mesh {
   overlap_pool pool;
   S dt;
   meeting what;
+  std::size_t threads;
 
   COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const {
-    if (k < *pressing.count) press_with(pressing.numbers[k]);
+    std::size_t const count = *pressing.count;
+    std::size_t apart = 1;
+    while (apart < 32 && 2 * apart * count <= threads) apart *= 2;
+    if (k % apart == 0 && k / apart < count) press_with(pressing.numbers[k / apart]);
   }
 
  protected:
