@@ -68,7 +68,7 @@ class output_file {
   }
 
   output_file& operator<<(std::string_view text) {
-    make_room(text.size());
+    ensure_capacity(text.size());
     buffer_.append(text);
     return *this;
   }
@@ -120,7 +120,7 @@ class output_file {
     }
   }
 
-  void make_room(std::size_t size) {
+  void ensure_capacity(std::size_t size) {
     if (buffer_.size() + size > capacity) flush();
   }
 

@@ -42,8 +42,8 @@ struct grid_or_tree_ref : bucket_ref<S> {
     return asks_tree() ? tree.begin(s) : bucket_ref<S>::begin(s);
   }
   template <class Sphere>
-  COLLIDE_HD bool next(Sphere const& s, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
-    return asks_tree() ? tree.next(s, c, most, range) : bucket_ref<S>::next(s, c, most, range);
+  COLLIDE_HD bool next(Sphere const& s, candidate_cursor& c, std::uint32_t max_count, candidate_range& range) const {
+    return asks_tree() ? tree.next(s, c, max_count, range) : bucket_ref<S>::next(s, c, max_count, range);
   }
 };
 
@@ -140,7 +140,7 @@ struct automatic {
     enum class strategy { all_pairs, grid, tree };
 
     strategy best_without_tree(automatic const& options) const {
-      return detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? strategy::grid : strategy::all_pairs;
+      return detail::fits_grid(mesh_.size(), options.grid.max_triangles) ? strategy::grid : strategy::all_pairs;
     }
 
     template <class Space, class Spheres>
@@ -210,12 +210,12 @@ struct automatic {
     /// Nanoseconds by which queries by a tree are faster than by a grid, from at most so many spheres.
     template <class Spheres>
     static double saved_by_tree(slender_cost_model const& c, detail::sampled_triangles<S> const& sample,
-                                Spheres const& spheres, std::size_t most,
+                                Spheres const& spheres, std::size_t max_count,
                                 detail::planned_candidates<S> const& candidates = {}) {
       // as triangle_pieces.hpp has it
       double const around = sample.reached(spheres, 8, 1).boxes,
                    pieces = detail::min(detail::max(std::sqrt(around / 2), 2.0), 16.0);
-      detail::reached_by_sphere const mean = sample.reached(spheres, most, pieces, candidates);
+      detail::reached_by_sphere const mean = sample.reached(spheres, max_count, pieces, candidates);
       return static_cast<double>(spheres.size()) *
              (c.per_box_ns * mean.candidates - c.per_sphere_ns - c.per_touched_ns * mean.triangles -
               c.per_piece_ns * (mean.pieces - mean.triangles));

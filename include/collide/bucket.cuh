@@ -49,7 +49,7 @@ struct bucket {
 
   /// The most triangles of a build; more are refused (`error`). A grid cannot have more than the default: larger meshes
   /// go in_passes.
-  std::size_t most_triangles = detail::most_triangles_of_grid;
+  std::size_t max_triangles = detail::max_triangles_of_grid;
 
   template <class S>
   class index;
@@ -109,8 +109,8 @@ struct grid_set {
 
   /// The radius of a grid for spheres of one radius: that of the one that is there if it is at most `most` times as
   /// wide, else `wider`.
-  S reach_for(S radius, S most, S wider) const {
-    bool const serves = asked.count == 1 && radius <= asked.reaches[0] && asked.reaches[0] <= most * radius;
+  S reach_for(S radius, S max_ratio, S wider) const {
+    bool const serves = asked.count == 1 && radius <= asked.reaches[0] && asked.reaches[0] <= max_ratio * radius;
     return serves ? asked.reaches[0] : wider;
   }
 };
@@ -139,7 +139,7 @@ class bucket::index {
   template <class Space>
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
     if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
-    detail::check_triangles(mesh.size(), options.most_triangles);
+    detail::check_triangles(mesh.size(), options.max_triangles);
     if (options.memory_budget != 0 && mesh.size() != mesh_.size()) {
       measures_.box_memory.release();
       lists_.release();
@@ -261,7 +261,7 @@ class bucket::index {
   }
   template <class Space>
   static bool can_bin(bucket const& options, std::size_t spheres) {
-    return bins_spheres<Space>(options) && spheres <= detail::sorted_spheres<S>::most;
+    return bins_spheres<Space>(options) && spheres <= detail::sorted_spheres<S>::max_size;
   }
 
   /// The plan of a query of spheres at rest.

@@ -63,7 +63,7 @@ struct tree_policy {
     template <class Space>
     id const* search_order([[maybe_unused]] Space& space, [[maybe_unused]] sphere_view<S> const& spheres) {
       if constexpr (!bvh_tuning<Space>::divides_by_area) {
-        if (spheres.size() >= bvh_tuning<Space>::least_sorted_points)
+        if (spheres.size() >= bvh_tuning<Space>::min_sorted_points)
           return points_.sort(space, spheres, radix_.summary());
       }
       return nullptr;
@@ -71,7 +71,7 @@ struct tree_policy {
     template <class Space>
     void reserve([[maybe_unused]] Space& space, [[maybe_unused]] std::size_t spheres) {
       if constexpr (!bvh_tuning<Space>::divides_by_area) {
-        if (spheres >= bvh_tuning<Space>::least_sorted_points) points_.reserve(space, spheres);
+        if (spheres >= bvh_tuning<Space>::min_sorted_points) points_.reserve(space, spheres);
       }
     }
 

@@ -108,16 +108,16 @@ class simulation {
   /// there is room, if an effect makes more; more than 2^32 - 2 are refused (`error`), as is room that no effect of the
   /// scene fills, and radii that differ without `polydisperse` in the scene. O(particles). Allocates; may wait.
   COLLIDE_COLD void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
-    std::size_t const n = particles.size(), room = detail::max(n, capacity);
+    std::size_t const n = particles.size(), places = detail::max(n, capacity);
     S const own = effects_.source_radius();
-    detail::check_particles<columns>(particles.one_radius(), n, room, own, particles.common_radius());
-    place(particles, velocities, room);
+    detail::check_particles<columns>(particles.one_radius(), n, places, own, particles.common_radius());
+    place(particles, velocities, places);
     radii_ = {particles.common_radius(), particles.common_radius(), S(0)};
     if (!particles.one_radius()) radii_ = detail::radius_range_of(*this);
     check_radii("set");
     radii_ = radii_.with(own);
-    if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, room, radii_);
-    if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
+    if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, places, radii_);
+    if constexpr (effects_type::overlaps) surfaces_.clear(space_, places);
     know_smallest();
     prepare();
   }
@@ -145,7 +145,7 @@ class simulation {
       pressing_counts_.reserve(resource, 3);
       space_.fill(pressing_counts_.data(), 0, 3 * sizeof(std::uint32_t));
       if constexpr (!execution_space::host_accessible)
-        overlaps_.reserve(resource, detail::max(particles, detail::overlap_pool::least));
+        overlaps_.reserve(resource, detail::max(particles, detail::overlap_pool::min_items));
     }
   }
 
@@ -166,11 +166,11 @@ class simulation {
     mesh_ = mesh;
     has_mesh_ = true;
     if constexpr (sweeps) {
-      least_radius_ = 8 * std::numeric_limits<S>::epsilon() * detail::largest_coordinate(space_, mesh, mesh_summary_);
+      min_radius_ = 8 * std::numeric_limits<S>::epsilon() * detail::largest_coordinate(space_, mesh, mesh_summary_);
     }
     wake_all();  // what slept may have lost its support
     prepare();
-    if (is_set_) release_adhered();
+    if (is_set_) release_stuck();
   }
 
   // Other scalar types end here.
@@ -266,7 +266,7 @@ class simulation {
     if constexpr (moves || meets_others) wake_all();
     if constexpr (meets_others) {
       next_meeting_ = effects_type::ends_after_meeting ? detail::meeting::of_all : detail::meeting::in_step;
-      if (has_mesh_) release_adhered();
+      if (has_mesh_) release_stuck();
     }
   }
 
@@ -367,16 +367,16 @@ class simulation {
   }
 
   /// Puts particles into new columns, with places for more.
-  COLLIDE_COLD void place(sphere_view<S> const& particles, S const* velocities, std::size_t room) {
-    reserve(room);
-    state_ = memory_.state(room, particles.size(), particles.common_radius());
+  COLLIDE_COLD void place(sphere_view<S> const& particles, S const* velocities, std::size_t places) {
+    reserve(places);
+    state_ = memory_.state(places, particles.size(), particles.common_radius());
     if constexpr (has_begin_step) {
       state_.time = device_time_.data();
       space_.fill(state_.time, 0, detail::clock_size * sizeof(double));
     }
     time_ = 0;
     next_meeting_ = effects_type::ends_after_meeting ? detail::meeting::of_all : detail::meeting::in_step;
-    space_.for_each(detail::padded_size(room), detail::initial(state_, particles, velocities, effects_));
+    space_.for_each(detail::padded_size(places), detail::initial(state_, particles, velocities, effects_));
     is_set_ = true;
   }
 
@@ -491,7 +491,7 @@ class simulation {
   void move(S dt) {
     if (state_.size == 0) return;
     using kernel_type = detail::step_kernel<step_context<decltype(mesh_ref(dt))>>;
-    kernel_type const kernel{{state_, effects_, mesh_ref(dt), overflow_.data(), dt, reverse_order_, least_radius_},
+    kernel_type const kernel{{state_, effects_, mesh_ref(dt), overflow_.data(), dt, reverse_order_, min_radius_},
                              kernel_type::grid_size(space_, state_.size)};
     reverse_order_ = !reverse_order_;
     space_.launch(kernel.blocks, kernel);
@@ -535,10 +535,9 @@ class simulation {
   }
 
   /// Frees particles that stick to the mesh and do not touch it any more.
-  void release_adhered() {
+  void release_stuck() {
     if constexpr (effects_type::adheres) {
-      space_.for_each(state_.size,
-                      detail::release_adhered{state_, mesh_ref(S(0)), bodies_.are_driven(), bodies_.size()});
+      space_.for_each(state_.size, detail::release_stuck{state_, mesh_ref(S(0)), bodies_.are_driven(), bodies_.size()});
     }
   }
 
@@ -584,10 +583,11 @@ class simulation {
       std::size_t const n = detail::max(state_.size, std::size_t{is_part});
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_space<execution_space> there(space_);
-      S const room = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.room());
-      S const most = detail::reach_of<effects_type>(detail::max(radii_.largest, least_radius_)) + room;
-      bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < most);
-      detail::prepare_index(index_, there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
+      S const margin = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.margin());
+      S const reached = detail::reach_of<effects_type>(detail::max(radii_.largest, min_radius_)) + margin;
+      bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < reached);
+      detail::prepare_index(index_, there, options_,
+                            wider ? spheres_xyz(state_.at(position{}), n, reached) : spheres());
     }
   }
 
@@ -640,12 +640,13 @@ class simulation {
 
   /// Two particles must not meet on both sides at once.
   COLLIDE_COLD void check_sides() const {
-    auto const least = 2 * static_cast<double>(neighbour_lists::width_of(radii_.largest, radii_.smallest));
+    auto const shortest = 2 * static_cast<double>(neighbour_lists::width_of(radii_.largest, radii_.smallest));
     auto const space = effects_.space();
     for (int k = 0; k < 3; ++k) {
-      if (space.length(k) >= least) continue;
+      if (space.length(k) >= shortest) continue;
       throw error("collide: periodic_box: particles meet across its sides, and so each must be at least " +
-                  std::to_string(least) + " long, two diameters of the largest with the skin of its neighbours: make " +
+                  std::to_string(shortest) +
+                  " long, two diameters of the largest with the skin of its neighbours: make " +
                   "the box larger, or the particles smaller");
     }
   }
@@ -664,7 +665,7 @@ class simulation {
   buffer<std::uint8_t> was_there_;  ///< `alive` when a step begins, for effects that make particles
   detail::radius_range<S> radii_;
   smallest_radii smallest_;
-  S least_radius_ = 0;
+  S min_radius_ = 0;
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
   surface_memory surfaces_;
@@ -682,9 +683,9 @@ class simulation {
 /// `sphere_contact::longest_step`, `granular_contact::longest_step`.
 template <class Detector, class... Effect>
 double largest_time_step(simulation<Detector, Effect...> const& of) {
-  double most = std::numeric_limits<double>::infinity();
-  ((most = detail::min(most, detail::longest_step_of<Effect>(of.effects_, of.smallest_) / 4)), ...);
-  return most;
+  double longest = std::numeric_limits<double>::infinity();
+  ((longest = detail::min(longest, detail::longest_step_of<Effect>(of.effects_, of.smallest_) / 4)), ...);
+  return longest;
 }
 
 }  // namespace collide

@@ -47,17 +47,17 @@ void check_for_pairs(mesh_view<S> const& mesh, std::string const& function) {
   check_corners(mesh, function.c_str());
 }
 
-/// Calls f(i)(other, to) for all triangles i whose box, wider by `room` on all sides, meets that of a triangle of a
+/// Calls f(i)(other, to) for all triangles i whose box, wider by `margin` on all sides, meets that of a triangle of a
 /// larger number, and returns all that was added to the vectors `to`, sorted. Triangles that are not finite are left
 /// out.
 template <class Found, class S, class F>
-std::vector<Found> found_in_pairs(mesh_view<S> const& mesh, S room, host const& space, F const& f) {
+std::vector<Found> found_in_pairs(mesh_view<S> const& mesh, S margin, host const& space, F const& f) {
   std::vector<Found> found;
   sah_tree<S> tree;
   buffer<tree_node> nodes;
   if (mesh.size() == 0 || !tree.build(space, mesh, nodes)) return found;
   tree_ref<S> const ref{mesh, nodes.data(), tree.before()};
-  vec3<S> const wider(room, room, room);
+  vec3<S> const wider(margin, margin, margin);
   constexpr std::size_t share = 256;
   std::vector<std::vector<Found>> parts((mesh.size() + share - 1) / share);
   for_each_block(space, parts.size(), [&](std::size_t p) {

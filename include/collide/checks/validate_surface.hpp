@@ -132,9 +132,9 @@ class triangles_side_by_side {
   }
   bool is_in_plane(corners_type const& of, corners_type const& t) const {
     vec3<double> const normal = normal_of(of);
-    double const most = tolerance_ * std::sqrt(dot(normal, normal));
+    double const limit = tolerance_ * std::sqrt(dot(normal, normal));
     return std::all_of(t.begin(), t.end(),
-                       [&](vec3<double> const& p) { return std::abs(dot<double>(p - of[0], normal)) <= most; });
+                       [&](vec3<double> const& p) { return std::abs(dot<double>(p - of[0], normal)) <= limit; });
   }
   /// Cuts off the part of a convex polygon where `height` is below 0: I. E. Sutherland and G. W. Hodgman,
   /// Communications of the ACM 17, 1974.

@@ -48,7 +48,7 @@ class in_passes {
 
   /// Without a mesh. The stream and the memory resource of the space must outlive it.
   explicit in_passes(execution_space space = execution_space(), typename Detector::broad_phase options = {})
-      : most_{most_of(options, 0)}, detector_(std::move(space), std::move(options)) {}
+      : max_triangles_{max_triangles_of(options, 0)}, detector_(std::move(space), std::move(options)) {}
 
   /// Divides the mesh into parts that follow each other in its order, all about as large: passes cost least where
   /// triangles near each other have numbers near each other. If there is one part alone, builds the detector of it.
@@ -70,8 +70,8 @@ class in_passes {
     passes_ = passes;
   }
 
-  /// In as few passes as the broad phase allows: see `bucket::most_triangles`.
-  void build(mesh_view<scalar> mesh) { build(mesh, most_); }
+  /// In as few passes as the broad phase allows: see `bucket::max_triangles`.
+  void build(mesh_view<scalar> mesh) { build(mesh, max_triangles_); }
 
   /// As `detector::query`, of all triangles: every colliding pair goes to the sink, exactly once.
   ///
@@ -116,16 +116,16 @@ class in_passes {
 
   /// The most triangles of a build.
   template <class Options>
-  static auto most_of(Options const& options, int) -> decltype(std::size_t{options.most_triangles}) {
-    return std::min(options.most_triangles, detail::most_triangles_of_grid);
+  static auto max_triangles_of(Options const& options, int) -> decltype(std::size_t{options.max_triangles}) {
+    return std::min(options.max_triangles, detail::max_triangles_of_grid);
   }
   template <class Options>
-  static auto most_of(Options const& options, int) -> decltype(std::size_t{options.grid.most_triangles}) {
-    return most_of(options.grid, 0);
+  static auto max_triangles_of(Options const& options, int) -> decltype(std::size_t{options.grid.max_triangles}) {
+    return max_triangles_of(options.grid, 0);
   }
   template <class Options>
-  static std::size_t most_of(Options const&, long) {
-    return detail::most_triangles_of_grid;
+  static std::size_t max_triangles_of(Options const&, long) {
+    return detail::max_triangles_of_grid;
   }
 
   /// The first triangle of pass number `pass`.
@@ -141,9 +141,9 @@ class in_passes {
       return on_host;
     } else {
       scalar* const to = corners_.reserve(space().resource(), 9 * n);
-      constexpr std::size_t most = std::size_t{1} << 20;  // triangles that are packed at a time
-      for (std::size_t i = 0; i < n; i += most) {
-        std::size_t const some = std::min(most, n - i);
+      constexpr std::size_t max_size = std::size_t{1} << 20;  // triangles that are packed at a time
+      for (std::size_t i = 0; i < n; i += max_size) {
+        std::size_t const some = std::min(max_size, n - i);
         packed_.resize(space(), 9 * some);
         host().for_each(some, detail::pack_triangles<scalar>{on_host.subview(i, some), packed_.data()});
         space().copy_from_host(to + 9 * i, packed_.data(), 9 * some);
@@ -219,7 +219,7 @@ class in_passes {
     sink.run(space(), query);
   }
 
-  std::size_t most_;  ///< triangles of a build
+  std::size_t max_triangles_;  ///< triangles of a build
   Detector detector_;
   mesh_view<scalar> mesh_;
   std::size_t passes_ = 0;

@@ -220,7 +220,7 @@ class posed {
     auto* const count = clear_count();
     id* const near = near_.reserve(resource, n);
     space_.for_each((n + group - 1) / group,
-                    detail::list_near_bodies<scalar, group>{mesh(), bodies_.room(), spheres, count, near});
+                    detail::list_near_bodies<scalar, group>{mesh(), bodies_.margin(), spheres, count, near});
     std::size_t const size = space_.read(count);
     numbers_.reserve(resource, n);
     centres_.reserve(resource, 3 * n);
@@ -232,7 +232,7 @@ class posed {
   void find(spheres_type const& spheres, std::size_t n, part const& p, Detector& detector) {
     auto* const count = clear_count();
     scalar* const radii = spheres.one_radius() ? nullptr : radii_.data();
-    space_.for_each(n, detail::list_near_body<scalar>{mesh(), p.frame, bodies_.room(), spheres, near_.data(), count,
+    space_.for_each(n, detail::list_near_body<scalar>{mesh(), p.frame, bodies_.margin(), spheres, near_.data(), count,
                                                       numbers_.data(), centres_.data(), radii});
     std::size_t const size = space_.read(count);
     if (size == 0) return;

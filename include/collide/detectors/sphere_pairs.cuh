@@ -25,8 +25,8 @@ struct find_sphere_pairs {
 
   COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t place) const {
     if (place >= cells.counts[1]) return;
-    constexpr std::uint32_t room = 16;
-    pair found[room];
+    constexpr std::uint32_t capacity = 16;
+    pair found[capacity];
     std::uint32_t size = 0;
     auto const i = static_cast<std::uint32_t>(place);
     id const own = cells.numbers[i];
@@ -40,7 +40,7 @@ struct find_sphere_pairs {
       } else if (own < other || !is_found_by_other) {
         found[size++] = own < other ? pair{own, other} : pair{other, own};
       }
-      if (size + 2 <= room) return;
+      if (size + 2 <= capacity) return;
       store(found, size);
       size = 0;
     });

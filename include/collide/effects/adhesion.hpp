@@ -29,8 +29,8 @@ struct adhesion {
 
   template <class Particle, class S>
   COLLIDE_HD_INLINE bool holds(Particle const&, vec3<S> const& pull, S dt) const {
-    S const most = S(max_acceleration) * dt;
-    return detail::dot(pull, pull) <= most * most;
+    S const limit = S(max_acceleration) * dt;
+    return detail::dot(pull, pull) <= limit * limit;
   }
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
@@ -40,9 +40,9 @@ struct adhesion {
       return;
     }
     if (p[adhered{}] == detail::came_too_fast && !comes(p, t, dt)) return;
-    S const pressed = detail::min(detail::dot(t.force_dv, t.normal), S(0)), most = S(max_acceleration) * dt;
+    S const pressed = detail::min(detail::dot(t.force_dv, t.normal), S(0)), limit = S(max_acceleration) * dt;
     vec3<S> const pull = t.force_dv - t.normal * pressed;
-    if (!(detail::dot(pull, pull) <= most * most)) return;
+    if (!(detail::dot(pull, pull) <= limit * limit)) return;
     if (t.is_resting) p[position{}] -= v * t.elapsed;  // it was held all the time
     v = vec3<S>(S(0), S(0), S(0));
     if (t.depth > 0) p[position{}] += t.normal * t.depth;
@@ -55,8 +55,8 @@ struct adhesion {
   template <class S>
   COLLIDE_HD_INLINE static S touching_speed(mesh_contact<S> const& t) {
     S const force = detail::dot(t.force_dv, t.force_dv), with = detail::dot(t.velocity_before, t.force_dv);
-    S const part = with > 0 ? detail::min(with / force, S(1)) : S(0);
-    vec3<S> const own = t.velocity_before - t.force_dv * part;
+    S const fraction = with > 0 ? detail::min(with / force, S(1)) : S(0);
+    vec3<S> const own = t.velocity_before - t.force_dv * fraction;
     S const approach = t.approach_speed + detail::min(detail::dot(t.force_dv, t.normal), S(0));
     return detail::max(detail::sqrt_rn(detail::dot(own, own)), approach);
   }
@@ -64,8 +64,8 @@ struct adhesion {
   template <class Particle, class S>
   COLLIDE_HD_INLINE static bool comes(Particle const& p, mesh_contact<S> const& t, S dt) {
     S const depth = t.depth + detail::dot(t.normal, vec3<S>(p[position{}] - t.start));
-    S const way = -detail::dot(t.velocity_before, t.normal) * (dt - t.remaining - t.elapsed);
-    return way - depth > detail::contact_tolerance<S> * p.radius() + detail::rounding_at(t.start);
+    S const travel = -detail::dot(t.velocity_before, t.normal) * (dt - t.remaining - t.elapsed);
+    return travel - depth > detail::contact_tolerance<S> * p.radius() + detail::rounding_at(t.start);
   }
 };
 

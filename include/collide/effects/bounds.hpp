@@ -59,13 +59,13 @@ struct box_walls {
     S const e = S(restitution), a = inward * forces.change(dt)[k], late = Forces::kick_after * a;
     S const v = inward * p[velocity{}][k] - late;
     if (!(v < 0)) return S(0);
-    S const part = detail::min(depth / (-v * dt), S(1)), there = v + a / 2, lift = -2 * a * v * part;
+    S const fraction = detail::min(depth / (-v * dt), S(1)), there = v + a / 2, lift = -2 * a * v * fraction;
     S const speed = e * detail::sqrt_rn(there * there + lift);  // after the impact, at the wall
     bool const rests = speed <= -3 * a;
     S const square = speed * speed + e * lift;  // 0 or less: it does not come as high
     S const leaves = square > 0 ? detail::sqrt_rn(square) : speed;
     p[velocity{}][k] = rests ? S(0) : inward * (leaves - a / 2 + late);
-    return rests || !(square > 0) ? S(0) : e * part * -v * dt;
+    return rests || !(square > 0) ? S(0) : e * fraction * -v * dt;
   }
 };
 

@@ -37,7 +37,7 @@ struct nozzle {
 
  private:
   /// Between -1 and 1, always the same for a number.
-  static COLLIDE_HD double random(std::uint64_t number) { return 2 * detail::random_part(number) - 1; }
+  static COLLIDE_HD double random(std::uint64_t number) { return 2 * detail::random_fraction(number) - 1; }
 };
 
 namespace detail {
@@ -52,10 +52,10 @@ struct emit_particles {
   bool only_free;     ///< none makes room
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::uint64_t const begin = begun(), n = begin_in_step(state.time, due), room = state.size - state.placed;
+    std::uint64_t const begin = begun(), n = begin_in_step(state.time, due), capacity = state.size - state.placed;
     if (i >= n) return;
     std::uint64_t const number = only_free ? begin + i : begin + n - 1 - i;
-    store_at(state.placed + static_cast<std::size_t>(number % room), number, (n - 1 - i) / room);
+    store_at(state.placed + static_cast<std::size_t>(number % capacity), number, (n - 1 - i) / capacity);
   }
 
  protected:
@@ -85,12 +85,13 @@ struct emit_at_places : emit_particles<S, State, Source> {
   COLLIDE_HD void operator()(std::size_t i) const {
     State const& here = this->state;
     std::uint64_t const begin = this->begun(), n = begin_in_step(here.time, this->due);
-    std::uint64_t const room = here.all_size - here.all_placed, place = here.at(global_number{})[i];
+    std::uint64_t const capacity = here.all_size - here.all_placed, place = here.at(global_number{})[i];
     if (n == 0 || place < here.all_placed) return;
-    std::uint64_t const first = (place - here.all_placed + room - begin % room) % room;  // of the step for this place
+    std::uint64_t const first =
+        (place - here.all_placed + capacity - begin % capacity) % capacity;  // of the step for this place
     if (first >= n) return;
-    std::uint64_t const others = (n - 1 - first) / room;
-    this->store_at(i, begin + first + (this->only_free ? 0 : others * room), others);
+    std::uint64_t const others = (n - 1 - first) / capacity;
+    this->store_at(i, begin + first + (this->only_free ? 0 : others * capacity), others);
   }
 };
 
@@ -143,9 +144,9 @@ struct emit_from {
       if (state.all_size != state.all_placed)
         space.for_each(state.size, places{{state, source, due, mark, only_where_free}});
     } else {
-      std::size_t const room = state.size - state.placed;
-      std::size_t const most = due < static_cast<double>(room) ? static_cast<std::size_t>(due) + 2 : room;
-      space.for_each(detail::min(most, room),
+      std::size_t const capacity = state.size - state.placed;
+      std::size_t const max_count = due < static_cast<double>(capacity) ? static_cast<std::size_t>(due) + 2 : capacity;
+      space.for_each(detail::min(max_count, capacity),
                      detail::emit_particles<S, State, Source>{state, source, due, mark, only_where_free});
     }
   }

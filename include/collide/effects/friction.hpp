@@ -33,11 +33,11 @@ struct friction {
     if constexpr (spins) slip -= detail::cross(p[angular_velocity{}], vec3<S>(t.normal * p.radius()));
     slip -= t.normal * detail::dot(slip, t.normal);
     S const speed = detail::sqrt_rn(detail::dot(slip, slip));
-    S const needed = spins ? speed * S(2.0 / 7) : speed, most = S(static_coefficient) * t.normal_impulse;
-    if (needed <= most) t.friction_reserve = most - needed;
-    if (!spins && t.is_resting && needed <= most) return t.hold(p);
+    S const needed = spins ? speed * S(2.0 / 7) : speed, limit = S(static_coefficient) * t.normal_impulse;
+    if (needed <= limit) t.friction_reserve = limit - needed;
+    if (!spins && t.is_resting && needed <= limit) return t.hold(p);
     if (!(needed > 0)) return;
-    S const applied = needed <= most ? needed : detail::min(needed, S(kinetic_coefficient) * t.normal_impulse);
+    S const applied = needed <= limit ? needed : detail::min(needed, S(kinetic_coefficient) * t.normal_impulse);
     vec3<S> const change = slip * (applied / speed);
     p[velocity{}] -= change;
     if (t.is_resting) p[position{}] -= change * t.elapsed;  // it acted all the time, not only now

@@ -98,7 +98,7 @@ struct granular_contact {
   /// `stiffness_ratio` if that is above 1.
   double longest_step(smallest_radii const& radii) const {
     double const stiffer = std::sqrt(std::max(1.0, detail::stiffness_ratio_of(tangential)));
-    return made_of.least(radii, [&](solid const& s, double r) {
+    return made_of.min_of(radii, [&](solid const& s, double r) {
       if constexpr (Normal::is_hertzian) {
         double const shear = s.young / (2 * (1 + s.poisson));
         return 3.14159265358979323846 * r * std::sqrt(s.density / shear) / (0.1631 * s.poisson + 0.8766) / stiffer;
@@ -265,11 +265,11 @@ struct granular_contact {
   /// it just held.
   template <class S>
   COLLIDE_HD_INLINE S hold_saddle(granular_pair<S>& c, detail::contact_material const& of) const {
-    S const least = cohesion.least_overlap(c, of);
-    if (c.overlap >= least) return 1;
-    S const part = 1 - (least - c.overlap) / (S(farthest_saddle - farther) * c.own_radius);
-    c.overlap = least;
-    return detail::max(part, S(0));
+    S const limit = cohesion.min_overlap(c, of);
+    if (c.overlap >= limit) return 1;
+    S const fraction = 1 - (limit - c.overlap) / (S(farthest_saddle - farther) * c.own_radius);
+    c.overlap = limit;
+    return detail::max(fraction, S(0));
   }
 
   template <class S>

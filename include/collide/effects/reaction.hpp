@@ -83,7 +83,7 @@ struct reaction {
     vec3<double> const velocity = t.velocity.template cast<double>(), impulse = scaled(change, -mass);
     vec3<double> const moment = cross(centre, impulse) - scaled(cross(shift, velocity), mass) -
                                 scaled(turn, mul_rn(0.4 * mass, mul_rn(radius, radius)));
-    bool const has_counts = dot(impulse, impulse) + dot(moment, moment) < most_squared;  // false for NaN
+    bool const has_counts = dot(impulse, impulse) + dot(moment, moment) < max_squared;  // false for NaN
     if (!has_counts) {
       atomic_add(refused, 1);
       return;
@@ -95,7 +95,7 @@ struct reaction {
   }
 
  private:
-  static constexpr double most_squared = 0x1p122;  ///< of units: each fits into 64 bits
+  static constexpr double max_squared = 0x1p122;  ///< of units: each fits into 64 bits
 
   static COLLIDE_HD_INLINE void add(detail::impulse_counts& to, vec3<double> const& impulse,
                                     vec3<double> const& moment) {

@@ -53,11 +53,11 @@ struct sleep {
   template <class Particle>
   COLLIDE_HD_INLINE bool is_slow(Particle const& p) const {
     using S = typename Particle::scalar;
-    S const most = S(speed) * S(speed);
-    bool slow = detail::dot(p[velocity{}], p[velocity{}]) < most;
+    S const limit = S(speed) * S(speed);
+    bool slow = detail::dot(p[velocity{}], p[velocity{}]) < limit;
     if constexpr (Particle::template has<angular_velocity>) {
       auto const& w = p[angular_velocity{}];
-      slow = slow && detail::dot(w, w) * p.radius() * p.radius() < most;
+      slow = slow && detail::dot(w, w) * p.radius() * p.radius() < limit;
     }
     return slow;
   }

@@ -64,10 +64,10 @@ struct sphere_contact {
                             "from_restitution: restitution is from 0 to 1, duration, radius and density are above 0, "
                             "friction is not negative, and all are finite");
     double const pi = 3.14159265358979323846, reduced_mass = density * pi * radius * radius * radius * 2 / 3;
-    double a = 0, most = pi / 2;
+    double a = 0, high = pi / 2;
     for (int i = 0; i < 60; ++i) {
-      double const middle = (a + most) / 2;
-      (std::exp(-std::tan(middle) * (pi - 2 * middle)) > restitution ? a : most) = middle;
+      double const middle = (a + high) / 2;
+      (std::exp(-std::tan(middle) * (pi - 2 * middle)) > restitution ? a : high) = middle;
     }
     if (restitution >= 1) a = 0;
     a = a < 1.5 ? a : 1.5;
@@ -92,10 +92,11 @@ struct sphere_contact {
     vec3<S> force = n * normal_force;
     if (friction > 0) {
       // the point of contact divides the distance as the radii are: the arms of both torques are the whole of it
-      [[maybe_unused]] S const part = distance / (self.radius() + other.radius());
+      [[maybe_unused]] S const fraction = distance / (self.radius() + other.radius());
       if constexpr (spins) {
         approach -=
-            detail::cross(vec3<S>(self[angular_velocity{}] * r + other[angular_velocity{}] * other.radius()), n) * part;
+            detail::cross(vec3<S>(self[angular_velocity{}] * r + other[angular_velocity{}] * other.radius()), n) *
+            fraction;
       }
       vec3<S> const slip = approach - n * along;
       S const speed = detail::sqrt_rn(detail::dot(slip, slip));
@@ -103,7 +104,8 @@ struct sphere_contact {
         S const tangential_force = detail::min(S(tangential_damping) * speed, S(friction) * normal_force);
         vec3<S> const drag = slip * (tangential_force / speed);
         force -= drag;
-        if constexpr (spins) p[angular_velocity{}] += detail::cross(n, drag) * (S(2.5) * inverse_mass / r * part * dt);
+        if constexpr (spins)
+          p[angular_velocity{}] += detail::cross(n, drag) * (S(2.5) * inverse_mass / r * fraction * dt);
       }
     }
     p[velocity{}] += force * (inverse_mass * dt);

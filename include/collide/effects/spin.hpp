@@ -23,24 +23,24 @@ struct spin {
 
   template <class Particle, class S>
   COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S) const {
-    S most = S(rolling_resistance) * t.normal_impulse;
-    if (!(most > 0)) return;
-    if (t.friction_reserve > 0) most = slow_rolling(p, t, most);
+    S limit = S(rolling_resistance) * t.normal_impulse;
+    if (!(limit > 0)) return;
+    if (t.friction_reserve > 0) limit = slow_rolling(p, t, limit);
     auto& w = p[angular_velocity{}];
     S const rate = detail::sqrt_rn(detail::dot(w, w));
-    if (rate > 0) w = w * (detail::max(rate - S(2.5) * most / p.radius(), S(0)) / rate);
+    if (rate > 0) w = w * (detail::max(rate - S(2.5) * limit / p.radius(), S(0)) / rate);
   }
 
  private:
   /// A particle that rolls without slipping is slowed down as a whole: friction, as far as it has a reserve, keeps
-  /// rotation and motion together. Returns what is left of the resistance `most`, both per mass.
+  /// rotation and motion together. Returns what is left of the resistance `limit`, both per mass.
   template <class Particle, class S>
-  COLLIDE_HD_INLINE static S slow_rolling(Particle& p, mesh_contact<S>& t, S most) {
+  COLLIDE_HD_INLINE static S slow_rolling(Particle& p, mesh_contact<S>& t, S limit) {
     auto& w = p[angular_velocity{}];
     vec3<S> const turning = w - t.normal * detail::dot(w, t.normal);
     vec3<S> const rolled = detail::cross(turning, vec3<S>(t.normal * p.radius()));
     S const speed = detail::sqrt_rn(detail::dot(rolled, rolled)), needed = S(1.4) * speed;
-    S const resistance = detail::min(most, S(1.4) * t.friction_reserve);
+    S const resistance = detail::min(limit, S(1.4) * t.friction_reserve);
     if (needed <= resistance) {
       w -= turning;
       if (t.is_resting) {
@@ -48,13 +48,13 @@ struct spin {
       } else {
         p[velocity{}] -= rolled;
       }
-      return most - needed;
+      return limit - needed;
     }
-    S const part = resistance / needed;
-    w -= turning * part;
-    p[velocity{}] -= rolled * part;
-    if (t.is_resting) p[position{}] -= rolled * (part * t.elapsed);
-    return most - resistance;
+    S const fraction = resistance / needed;
+    w -= turning * fraction;
+    p[velocity{}] -= rolled * fraction;
+    if (t.is_resting) p[position{}] -= rolled * (fraction * t.elapsed);
+    return limit - resistance;
   }
 };
 

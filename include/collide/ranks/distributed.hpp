@@ -77,7 +77,7 @@ class distributed {
   /// many, and those near each other; the caller's mesh is not needed afterwards. Takes, of the host, 40 bytes of float
   /// or 76 of double for each triangle of a rank, twice that while it builds, and 0.3 MB for every 64 ranks; as much
   /// again in memory of a device; and what the detector takes for them. Throws `error` if there are more than 2^32 - 2
-  /// triangles in all, or more on a rank than its detector builds (see `bucket::most_triangles`). O(triangles log
+  /// triangles in all, or more on a rank than its detector builds (see `bucket::max_triangles`). O(triangles log
   /// triangles).
   void build(mesh_view<scalar> mine, divided_t) {
     if constexpr (alone) {

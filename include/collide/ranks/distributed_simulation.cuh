@@ -321,9 +321,9 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   /// Says with which free places this rank begins.
   void share_free(detail::global_counts& all) const {
     auto const ranks = static_cast<std::uint64_t>(ranks_.size()), rank = static_cast<std::uint64_t>(ranks_.rank());
-    std::uint64_t const room = all.size - all.placed;
-    all.first_free = all.placed + room * rank / ranks;
-    all.free_size = all.placed + room * (rank + 1) / ranks - all.first_free;
+    std::uint64_t const capacity = all.size - all.placed;
+    all.first_free = all.placed + capacity * rank / ranks;
+    all.free_size = all.placed + capacity * (rank + 1) / ranks - all.first_free;
   }
 
   /// Radii of the particles of all ranks. Throws `error` on all if there must be one, but there are several.
@@ -357,13 +357,14 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     };
     bool const has_any = ask(S(0), mine.size() != 0).first;
     bool const has_say = mine.size() != 0 || !has_any;
-    S const most = ask(mine.common_radius(), has_say).second, least = -ask(-mine.common_radius(), has_say).second;
-    bool const several =
-        ask(S(0), has_say && !mine.one_radius()).first || detail::to_bits(most) != detail::to_bits(least);
+    S const largest_common = ask(mine.common_radius(), has_say).second,
+            smallest_common = -ask(-mine.common_radius(), has_say).second;
+    bool const several = ask(S(0), has_say && !mine.one_radius()).first ||
+                         detail::to_bits(largest_common) != detail::to_bits(smallest_common);
     detail::check_particles<columns>(!several, 0, 0, S(0), S(0));
-    S const least_of_all = -ask(-smallest, has_say).second;
-    return {several ? S(0) : most,
-            {several ? least_of_all : most, ask(largest, has_say).second, S(0)},
+    S const smallest_of_all = -ask(-smallest, has_say).second;
+    return {several ? S(0) : largest_common,
+            {several ? smallest_of_all : largest_common, ask(largest, has_say).second, S(0)},
             ask(widest, has_say).second};
   }
 

@@ -95,9 +95,9 @@ class mpi_ranks {
 
   void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, reduction how) const {
     MPI_Op const op = how == reduction::sum ? MPI_SUM : MPI_MAX;
-    std::size_t const most = piece_ / sizeof *mine;
-    for (std::size_t i = 0; i < n; i += most) {
-      MPI_Allreduce(mine + i, all + i, static_cast<int>(std::min(most, n - i)), MPI_UINT64_T, op, comm_->comm);
+    std::size_t const max_count = piece_ / sizeof *mine;
+    for (std::size_t i = 0; i < n; i += max_count) {
+      MPI_Allreduce(mine + i, all + i, static_cast<int>(std::min(max_count, n - i)), MPI_UINT64_T, op, comm_->comm);
     }
   }
 

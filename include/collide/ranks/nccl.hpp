@@ -63,8 +63,8 @@ class nccl_communicator {
   }
   cudaStream_t stream() const { return stream_; }
 
-  unsigned char* sent(std::size_t bytes) { return room(sent_, bytes); }
-  unsigned char* received(std::size_t bytes) { return room(received_, bytes); }
+  unsigned char* sent(std::size_t bytes) { return reserved(sent_, bytes); }
+  unsigned char* received(std::size_t bytes) { return reserved(received_, bytes); }
 
   /// Waits for a stream. If NCCL says that another rank is gone, or that takes too long, ends the communicator and
   /// throws.
@@ -91,7 +91,7 @@ class nccl_communicator {
     void* at = nullptr;
     std::size_t bytes = 0;
   };
-  static unsigned char* room(memory& m, std::size_t bytes) {
+  static unsigned char* reserved(memory& m, std::size_t bytes) {
     if (bytes > m.bytes) {
       cudaFree(m.at);
       m = {};

@@ -55,7 +55,7 @@ struct saved_numbers {
     archive.value("time", time);
     archive.value("time on the device", clock[0]);
     if (HasSource) archive.value("particles of the source", clock[clock_made]);
-    if (HasSource) archive.value("part of its next one", clock[clock_part]);
+    if (HasSource) archive.value("part of its next one", clock[clock_fraction]);
     if (HasSource) archive.value("those that overlapped others", clock[clock_overlapping]);
     if (HasSource) archive.value("those that were not born", clock[clock_not_born]);
     archive.value("reverse order", reverse_order);

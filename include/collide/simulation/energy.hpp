@@ -114,12 +114,12 @@ struct particles_on_host {
   made_of solid_of(std::size_t i) const { return {solid[i]}; }
 
   /// From the centre of one sphere to that of another.
-  vec3<double> way(std::size_t i, std::size_t k) const {
+  vec3<double> between(std::size_t i, std::size_t k) const {
     auto const in_space = [&](std::size_t n) { return vec3<S>(x[3 * n], x[3 * n + 1], x[3 * n + 2]); };
     return apart(space, in_space(i), in_space(k)).template cast<double>();
   }
   /// The overlap of two spheres; below 0 if they are apart.
-  double overlap_of(std::size_t i, std::size_t k) const { return radius_of(i) + radius_of(k) - way(i, k).norm(); }
+  double overlap_of(std::size_t i, std::size_t k) const { return radius_of(i) + radius_of(k) - between(i, k).norm(); }
   /// Two spheres, as springs see them.
   granular_pair<double> pair_of(std::size_t i, std::size_t k, double overlap) const {
     granular_pair<double> p{};
@@ -339,13 +339,13 @@ contact_counts contact_report(simulation<Detector, Effect...> const& of) {
   detail::particles_on_host<Detector, Effect...> const all(of);
   contact_counts found;
   all.for_each_contact([&](std::size_t i, std::size_t k, double overlap) {
-    double const part = overlap / std::min(all.radius_of(i), all.radius_of(k));
+    double const ratio = overlap / std::min(all.radius_of(i), all.radius_of(k));
     ++found.contacts;
-    found.deep += part > 0.2;
-    found.largest_overlap = std::max(found.largest_overlap, part);
+    found.deep += ratio > 0.2;
+    found.largest_overlap = std::max(found.largest_overlap, ratio);
   });
-  auto const alive = std::count_if(all.is_there.begin(), all.is_there.end(), [](auto there) { return there != 0; });
-  if (alive > 0) found.coordination = 2 * static_cast<double>(found.contacts) / static_cast<double>(alive);
+  auto const living = std::count_if(all.is_there.begin(), all.is_there.end(), [](auto there) { return there != 0; });
+  if (living > 0) found.coordination = 2 * static_cast<double>(found.contacts) / static_cast<double>(living);
   found.longest_good_step = 0.8 * largest_time_step(of);  // that is a quarter
   return found;
 }

@@ -159,7 +159,7 @@ filling fill_once(Region const& region, size_distribution const& sizes, double l
   vec3<double> const lower(region.lower[0], region.lower[1], region.lower[2]);
   vec3<double> const upper(region.upper[0], region.upper[1], region.upper[2]);
   double const usual = std::cbrt(sizes.mean_volume() / 4.18879020478639);
-  dropped_spheres bed(lower, upper, larger * usual, larger * sizes.most());
+  dropped_spheres bed(lower, upper, larger * usual, larger * sizes.largest());
   std::vector<std::size_t> open(bed.columns());
   std::vector<int> misses(bed.columns(), 0);
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
@@ -174,7 +174,7 @@ filling fill_once(Region const& region, size_distribution const& sizes, double l
       std::size_t const column = open[which];
       double r;
       if (returned.empty()) {
-        r = sizes.radius_below(random_part(drawn++));
+        r = sizes.radius_below(random_fraction(drawn++));
       } else {
         r = returned.back();
         returned.pop_back();
@@ -182,7 +182,7 @@ filling fill_once(Region const& region, size_distribution const& sizes, double l
       double const wide = larger * r;
       double start[2];
       for (int k = 0; k < 2; ++k)
-        start[k] = std::min(std::max(bed.column_side(column, k, random_part(number++)), lower[k] + wide * 1.001),
+        start[k] = std::min(std::max(bed.column_side(column, k, random_fraction(number++)), lower[k] + wide * 1.001),
                             upper[k] - wide * 1.001);
       vec3<double> at;
       if (bed.drop(start[0], start[1], wide, at)) {
@@ -224,8 +224,8 @@ inline void keep_at_random(filling& all, std::size_t n, std::uint64_t seed) {
   std::vector<std::size_t> order(all.radii.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   for (std::size_t i = 0; i < n; ++i) {
-    double const part = random_part((seed << 40) + (std::uint64_t{3} << 38) + i);
-    std::swap(order[i], order[i + static_cast<std::size_t>(part * static_cast<double>(order.size() - i))]);
+    double const fraction = random_fraction((seed << 40) + (std::uint64_t{3} << 38) + i);
+    std::swap(order[i], order[i + static_cast<std::size_t>(fraction * static_cast<double>(order.size() - i))]);
   }
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
   for (std::size_t i = 0; i < n; ++i) {  // order[i] is not below i
@@ -245,7 +245,7 @@ filling fill_number(Region const& region, size_distribution const& sizes, std::s
   double const volume = detail::volume_of(region), wanted = static_cast<double>(n) * sizes.mean_volume() / volume;
   double narrowest = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) narrowest = std::min(narrowest, region.upper[k] - region.lower[k]);
-  double larger = std::min(std::cbrt(0.56 / wanted), 0.3 * narrowest / sizes.most());
+  double larger = std::min(std::cbrt(0.56 / wanted), 0.3 * narrowest / sizes.largest());
   filling found;
   for (int i = 0; i < 6; ++i) {
     larger = std::max(larger, 1.0);

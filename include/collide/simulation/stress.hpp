@@ -91,15 +91,15 @@ struct load_of_mesh {
     if constexpr (contains<typename Seen::list, angular_velocity>) grain.w = self[angular_velocity{}];
     if constexpr (contains<typename Seen::list, material>) grain.of_solid = self[material{}];
     lone_grain<S> pushed = grain;
-    bool holds = wall.overlap > 0;
+    bool touches = wall.overlap > 0;
     if constexpr (Law::is_memoryless) {
       law.on_mesh_overlap(pushed, grain, wall, S(1));
     } else {
       using memory_type = contact_access<typename Law::remembers::list, Values, S>;
-      holds = law.on_mesh_overlap(pushed, grain, wall, memory_type(values, S(0)), S(1));
+      touches = law.on_mesh_overlap(pushed, grain, wall, memory_type(values, S(0)), S(1));
     }
     mesh_load found;
-    found.contacts = holds ? 1 : 0;
+    found.contacts = touches ? 1 : 0;
     double const arm = static_cast<double>(self.the_radius - wall.overlap);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
@@ -119,7 +119,7 @@ void for_each_force(Law const& law, simulation<Detector, Effect...> const& of,
   auto const meet = [&](std::size_t i, std::size_t k, [[maybe_unused]] auto const& memory) {
     lone_grain<double> const own = grain_of(i);
     lone_grain<double> other = grain_of(k);
-    vec3<double> const branch = -all.way(i, k);
+    vec3<double> const branch = -all.between(i, k);
     other.x = own.x - branch;
     lone_grain<double> pushed = own;
     if constexpr (Law::is_memoryless) {
@@ -154,16 +154,16 @@ void for_each_force(Law const& law, simulation<Detector, Effect...> const& of,
 struct field_sums {
   double volume = 0, mass = 0, grains = 0, contacts = 0, momentum[3] = {}, moments[3][3] = {}, flux[3][3] = {};
 
-  void add_grain(double part, double of_volume, double of_mass, double of_contacts, vec3<double> const& v) {
-    volume += part * of_volume, mass += part * of_mass, grains += part, contacts += part * of_contacts;
+  void add_grain(double weight, double of_volume, double of_mass, double of_contacts, vec3<double> const& v) {
+    volume += weight * of_volume, mass += weight * of_mass, grains += weight, contacts += weight * of_contacts;
     for (int i = 0; i < 3; ++i) {
-      momentum[i] += part * of_mass * v[i];
-      for (int j = 0; j < 3; ++j) flux[i][j] += part * of_mass * v[i] * v[j];
+      momentum[i] += weight * of_mass * v[i];
+      for (int j = 0; j < 3; ++j) flux[i][j] += weight * of_mass * v[i] * v[j];
     }
   }
-  void add_force(double part, vec3<double> const& force, vec3<double> const& branch) {
+  void add_force(double weight, vec3<double> const& force, vec3<double> const& branch) {
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) moments[i][j] += part * force[i] * branch[j];
+      for (int j = 0; j < 3; ++j) moments[i][j] += weight * force[i] * branch[j];
   }
   grain_fields fields() const {
     grain_fields f;
@@ -260,20 +260,20 @@ struct grid_sink {
   }
   void grain(vec3<double> const& x, double volume, double mass, mesh_load const& load, vec3<double> const& v) {
     near(x, 0, [&](std::size_t cell, vec3<double> const& at) {
-      double const part = kernel((at - x).squaredNorm());
-      if (!(part > 0)) return;
-      sums[cell].add_grain(part, volume, mass, load.contacts, v);
+      double const weight = kernel((at - x).squaredNorm());
+      if (!(weight > 0)) return;
+      sums[cell].add_grain(weight, volume, mass, load.contacts, v);
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) sums[cell].moments[i][j] += part * mass * load.moment[i][j];
+        for (int j = 0; j < 3; ++j) sums[cell].moments[i][j] += weight * mass * load.moment[i][j];
     });
   }
   void line(vec3<double> const& from, vec3<double> const& branch, vec3<double> const& force) {
     constexpr double places[] = {0.0694318442029737, 0.330009478207572, 0.669990521792428, 0.930568155797026};
     constexpr double weights[] = {0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727};
     near(from, branch.norm(), [&](std::size_t cell, vec3<double> const& at) {
-      double part = 0;
-      for (int k = 0; k < 4; ++k) part += weights[k] * kernel((from - branch * places[k] - at).squaredNorm());
-      if (part > 0) sums[cell].add_force(part, force, branch);
+      double weight = 0;
+      for (int k = 0; k < 4; ++k) weight += weights[k] * kernel((from - branch * places[k] - at).squaredNorm());
+      if (weight > 0) sums[cell].add_force(weight, force, branch);
     });
   }
 };

@@ -20,7 +20,7 @@ class any_hit : public detail::array_per_sphere<std::uint8_t> {
 
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
-    std::uint8_t* const flags = room_for(space, query.spheres.size());
+    std::uint8_t* const flags = memory_for(space, query.spheres.size());
     space.fill(flags, 0, size_);
     query(detail::output{{nullptr, nullptr}, nullptr, 0, flags});
   }

@@ -103,7 +103,7 @@ class contains : public detail::array_per_sphere<std::uint8_t> {
 
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
-    detail::search_mesh(query, detail::find_inside{room_for(space, query.spheres.size())});
+    detail::search_mesh(query, detail::find_inside{memory_for(space, query.spheres.size())});
   }
 };
 

@@ -141,16 +141,16 @@ class csr : public detail::kept_in_space<id> {
     rows_ = query.spheres.size();
     collected_.fill(space, query);
     // room as for all pairs, so that a few more than last time are no reason to allocate
-    std::size_t const hits = collected_.size(), room = collected_.capacity();
+    std::size_t const hits = collected_.size(), reserved = collected_.capacity();
     bool const is_sorted = order_ == order::canonical;
     if (is_sorted) collected_.sort(space, query);
     std::uint64_t* const offsets = fixed_ ? external_offsets_ : own_offsets_.reserve(space.resource(), rows_ + 1);
-    id* const triangles = fixed_ ? external_triangles_ : own_triangles_.reserve(space.resource(), room);
-    std::uint32_t* const ranks = is_sorted ? nullptr : ranks_.reserve(space.resource(), room);
+    id* const triangles = fixed_ ? external_triangles_ : own_triangles_.reserve(space.resource(), reserved);
+    std::uint32_t* const ranks = is_sorted ? nullptr : ranks_.reserve(space.resource(), reserved);
     space.fill(offsets, 0, (rows_ + 1) * sizeof *offsets);
     space.for_each(hits, detail::count_rows{collected_.data(), offsets, ranks});
     detail::exclusive_sum(space, offsets, rows_ + 1, sum_memory_);
-    std::size_t const capacity = fixed_ ? capacity_ : room;
+    std::size_t const capacity = fixed_ ? capacity_ : reserved;
     space.for_each(hits, detail::scatter_triangles{collected_.data(), offsets, ranks, triangles, capacity});
     size_ = hits < capacity ? hits : capacity;
     offsets_ = offsets;

@@ -12,7 +12,7 @@ namespace collide {
 
 namespace detail {
 
-inline constexpr int most_nearest = 32;  ///< of a point
+inline constexpr int max_nearest = 32;  ///< of a point
 
 /// The nearest triangles seen so far to one point, by rising distance; of equally near ones those with the lowest
 /// numbers. Where distances as they are measured are too close to tell, a search among the two decides.
@@ -70,8 +70,8 @@ class k_nearest_search {
   S reach_;
   mesh_view<S> mesh_;
   int k_, size_ = 0;
-  S distances_[most_nearest];
-  id numbers_[most_nearest];
+  S distances_[max_nearest];
+  id numbers_[max_nearest];
 };
 
 /// Search functor of `k_nearest` for each sphere.
@@ -111,7 +111,7 @@ class k_nearest : public detail::array_per_sphere<nearest_triangle<S>> {
   /// `k` is not 1 to 32, or the distance negative or NaN.
   explicit k_nearest(int k, std::common_type_t<S> max_distance = std::numeric_limits<S>::infinity())
       : base{nullptr, static_cast<std::size_t>(k)}, k_{k}, max_distance_{max_distance} {
-    if (k < 1 || k > detail::most_nearest) throw error("collide: k_nearest: k is not from 1 to 32");
+    if (k < 1 || k > detail::max_nearest) throw error("collide: k_nearest: k is not from 1 to 32");
     if (!(max_distance >= 0)) throw error("collide: k_nearest: the largest distance is negative or NaN");
   }
 
@@ -125,7 +125,7 @@ class k_nearest : public detail::array_per_sphere<nearest_triangle<S>> {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: k_nearest<S> must have the scalar type of the detector");
     using precision = typename detail::nearest_precision<typename Query::narrow_phase>::type;
-    auto* const to = this->room_for(space, query.spheres.size());
+    auto* const to = this->memory_for(space, query.spheres.size());
     detail::search_mesh(query, detail::find_k_nearest<S, precision>{max_distance_, k_, to});
   }
 

@@ -115,7 +115,7 @@ class nearest : public detail::array_per_sphere<nearest_triangle<S>> {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: nearest<S> must have the scalar type of the detector");
     using precision = typename detail::nearest_precision<typename Query::narrow_phase>::type;
-    auto* const to = this->room_for(space, query.spheres.size());
+    auto* const to = this->memory_for(space, query.spheres.size());
     detail::search_mesh(query, detail::find_nearest<S, precision>{max_distance_, to});
   }
 

@@ -33,9 +33,9 @@ class pairs : public detail::array_in_space<pair> {
   /// Makes room in memory of `space` for queries of up to so many spheres, and `most` pairs: they then allocate
   /// nothing.
   template <class Space>
-  void reserve(Space const& space, std::size_t spheres, std::size_t most) {
+  void reserve(Space const& space, std::size_t spheres, std::size_t max_pairs) {
     if (fixed_ && order_ == order::unspecified) return collected_.reserve(space);
-    collected_.reserve(space, spheres, most);
+    collected_.reserve(space, spheres, max_pairs);
     if (order_ == order::canonical) collected_.reserve_sort(space);
   }
 

@@ -74,7 +74,7 @@ class signed_distance : public detail::array_per_sphere<signed_nearest_triangle<
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: signed_distance<S> must have the scalar type of the detector");
     using precision = typename detail::nearest_precision<typename Query::narrow_phase>::type;
-    auto* const to = this->room_for(space, query.spheres.size());
+    auto* const to = this->memory_for(space, query.spheres.size());
     detail::search_mesh(query, detail::find_signed_distance<S, precision>{max_distance_, to});
   }
 

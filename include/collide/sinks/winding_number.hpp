@@ -79,7 +79,7 @@ class winding_number : public detail::array_per_sphere<winding<S>> {
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: winding_number<S> must have the scalar type of the detector");
-    auto* const to = this->room_for(space, query.spheres.size());
+    auto* const to = this->memory_for(space, query.spheres.size());
     detail::winding_tree_ref<S> tree;
     if constexpr (detail::is_valid<detail::query_windings, Query>) {
       if (query.mesh.size() != 0) tree = query.windings();

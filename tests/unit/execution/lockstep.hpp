@@ -177,7 +177,7 @@ struct bucket_tuning<tests::lockstep<Lanes, Reversed>> : device_bucket_tuning {}
 template <int Lanes, bool Reversed>
 struct bvh_tuning<tests::lockstep<Lanes, Reversed>> {
   static constexpr bool divides_by_area = false;
-  static constexpr std::size_t least_sorted_points = 1;
+  static constexpr std::size_t min_sorted_points = 1;
 };
 template <int Lanes, bool Reversed>
 struct query_tuning<tests::lockstep<Lanes, Reversed>> {

@@ -76,7 +76,7 @@ void check(scene const& made, Spheres const& spheres) {
   CHECK(expected.size() > made.n / 10);
   CHECK(expected.size() < made.n);
   CHECK(expected.back() == made.n - 1);
-  for (int size : {1, 5, candidate_batch<float>::room}) {
+  for (int size : {1, 5, candidate_batch<float>::capacity}) {
     std::vector<collide::id> found;
     for (auto const& p : in_batches_of<NarrowPhase>(size, made, spheres)) {
       CHECK(p.sphere == p.triangle);

@@ -84,9 +84,9 @@ void check_several(std::vector<tests::near_case> const& cases) {
   constexpr std::size_t lanes = detail::sphere_soa<S>::simd_width;
   std::size_t wrong = 0, sure = 0, lost = 0;
   detail::candidate_batch<S> batch;
-  for (std::size_t first = 0; first < cases.size(); first += batch.room) {
-    std::size_t const last = std::min(first + batch.room, cases.size());
-    bool hits[batch.room];
+  for (std::size_t first = 0; first < cases.size(); first += batch.capacity) {
+    std::size_t const last = std::min(first + batch.capacity, cases.size());
+    bool hits[batch.capacity];
     batch.size = 0;
     for (std::size_t i = first; i < last; ++i) {
       tests::narrow_case<S> made(cases[i]);

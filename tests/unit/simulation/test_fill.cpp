@@ -184,7 +184,7 @@ TEST_CASE("fill: a source has radii of a distribution, at a rate of mass") {
   collide::emit source;
   source.rate = sizes.rate_of(3, 2500);
   source.source.half_width = 1;
-  source.radius = sizes.most();
+  source.radius = sizes.largest();
   simulation made(collide::host(1), collide::polydisperse{}, source);
   double const nowhere = 0;
   made.set(collide::spheres_xyz(&nowhere, 0, 1.0), nullptr, room);

@@ -117,7 +117,7 @@ TEST_CASE("in passes: parts of meshes of any layout") {
 TEST_CASE("in passes: a mesh of more triangles than a build takes is refused, and found in passes") {
   auto const made = made_of(300, 200);
   collide::bucket options;
-  options.most_triangles = 100;
+  options.max_triangles = 100;
   floats small(collide::host(1), options), whole(collide::host(1));
   std::string const refused = "collide: bucket: 300 triangles are more than 100, the most of one build";
   CHECK(contains(thrown([&] { small.build(made.mesh()); }), refused.c_str()));
@@ -135,15 +135,15 @@ TEST_CASE("in passes: a mesh of more triangles than a build takes is refused, an
   CHECK(contains(thrown([&] { passes.query(made.spheres(), collide::count()); }), "150 triangles are more than 100"));
   CHECK(contains(thrown([&] { passes.build(made.mesh(), 300); }), refused.c_str()));
   CHECK(contains(thrown([&] { passes.query(made.spheres(), collide::count()); }), "call build before"));
-  options.most_triangles = std::numeric_limits<std::size_t>::max();  // a grid has no more all the same
-  CHECK_NOTHROW(collide::detail::check_triangles(536870911, options.most_triangles));
-  CHECK(contains(thrown([&] { collide::detail::check_triangles(536870912, options.most_triangles); }), "536870911"));
+  options.max_triangles = std::numeric_limits<std::size_t>::max();  // a grid has no more all the same
+  CHECK_NOTHROW(collide::detail::check_triangles(536870911, options.max_triangles));
+  CHECK(contains(thrown([&] { collide::detail::check_triangles(536870912, options.max_triangles); }), "536870911"));
 }
 
 TEST_CASE("in passes: automatic makes no grid that cannot be, and passes are as large as a build takes") {
   auto const made = made_of(2000, 20);
   collide::automatic options;
-  options.grid.most_triangles = 100;
+  options.grid.max_triangles = 100;
   using detector = collide::detector<collide::automatic>;
   detector whole(collide::host(1)), limited(collide::host(1), options);
   whole.build(made.mesh());
@@ -225,7 +225,7 @@ TEST_CASE("in passes: memory is that of a part") {
 TEST_CASE("in passes: a divided mesh goes beyond what a build takes, and a rank with too much says so on all") {
   auto const made = made_of(300, 200);
   collide::bucket options;
-  options.most_triangles = 120;  // of rank 0
+  options.max_triangles = 120;  // of rank 0
   floats whole(collide::host(1));
   whole.build(made.mesh());
   auto const all = whole.query(made.spheres(), collide::count()).total();

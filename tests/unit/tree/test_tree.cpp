@@ -131,7 +131,7 @@ void check_tree(tests::hard_mesh<S> const& made, tree<S, Space> const& t) {
   bool const is_cut = std::any_of(finite.begin(), finite.end(), [&](id i) { return seen.boxes[i].size() > 1; });
   if (made.name == "needles") CHECK(is_cut == bvh_tuning<Space>::divides_by_area);
   if (made.name == "a soup" || made.name == "giants") CHECK(!is_cut);
-  CHECK(seen.levels <= most_tree_levels);
+  CHECK(seen.levels <= max_tree_levels);
   std::sort(seen.triangles.begin(), seen.triangles.end());
   std::vector<id> found;  // what is not finite may be there too
   std::copy_if(seen.triangles.begin(), seen.triangles.end(), std::back_inserter(found),
@@ -227,7 +227,7 @@ TEST_CASE("tree: where more levels are above than a cursor keeps, it finds out a
     CHECK(std::unique(all.begin(), all.end()) == all.end());
   };
   auto const mesh = collide::triangle_soup(corners.data(), 4000);
-  check(tree<float, host>(mesh), 7, most_tree_levels);
+  check(tree<float, host>(mesh), 7, max_tree_levels);
   check(tree<float, in_lockstep>(mesh), 5, 32);  // as many as on a device
 }
 

@@ -6,7 +6,8 @@
 /// `occupancy().test_occupied(occupancy().places_of(x, y, z), near)`, or `occupancy().test_swept(batch, near)` of those
 /// that move. In a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(sphere)` is true if the sphere can touch no triangle: it is quick;
-///   - `begin(sphere)` is a cursor, and `next(sphere, cursor, most, range)` moves it on and gives at most `most` more
+///   - `begin(sphere)` is a cursor, and `next(sphere, cursor, max_count, range)` moves it on and gives at most
+///   `max_count` more
 ///     entries, until it returns false; one may appear more than once if the sphere moves; `cursor.at_end()` is true if
 ///     it is known to return false the next time;
 ///   - `range.at(k)` is an entry, which is a triangle, `range.passes_coverage(entry)` a quick test whether the sphere
@@ -78,10 +79,10 @@ struct mesh_lookup {
   }
 
   /// All triangles, one range after the other.
-  COLLIDE_HD bool next_of_all(candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+  COLLIDE_HD bool next_of_all(candidate_cursor& c, std::uint32_t max_count, candidate_range& range) const {
     auto const n = static_cast<std::uint32_t>(mesh.size());
     if (c.skip >= n) return false;
-    range = {nullptr, c.skip, min(n - c.skip, most), cell_coverage::full_query};
+    range = {nullptr, c.skip, min(n - c.skip, max_count), cell_coverage::full_query};
     c.skip += range.count;
     if (c.skip == n) c.grid = candidate_cursor::ended;
     return true;
@@ -96,8 +97,8 @@ template <class S>
 struct all_pairs_ref : mesh_lookup<S> {
   COLLIDE_HD all_pairs_ref const& opened() const { return *this; }
   template <class Sphere>
-  COLLIDE_HD bool next(Sphere const&, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
-    return this->next_of_all(c, most, range);
+  COLLIDE_HD bool next(Sphere const&, candidate_cursor& c, std::uint32_t max_count, candidate_range& range) const {
+    return this->next_of_all(c, max_count, range);
   }
 
   /// Calls f(triangle) for every triangle, whatever the bound is that it returns.

@@ -70,22 +70,23 @@ COLLIDE_HD_INLINE auto begin_candidates([[maybe_unused]] Ref const& ref, [[maybe
   }
 }
 
-/// Calls f(triangle) for at most `most` more candidates; false if it has come to the end. What cannot go on enumerates
-/// all that it has had once more.
+/// Calls f(triangle) for at most `max_count` more candidates; false if it has come to the end. What cannot go on
+/// enumerates all that it has had once more.
 template <class Ref, class Sphere, class Cursor, class F>
-COLLIDE_HD_INLINE bool next_candidates(Ref const& ref, Sphere const& s, Cursor& c, std::uint32_t most, F const& f) {
+COLLIDE_HD_INLINE bool next_candidates(Ref const& ref, Sphere const& s, Cursor& c, std::uint32_t max_count,
+                                       F const& f) {
   if constexpr (std::is_same<Cursor, enumeration_count>::value) {
     std::uint32_t number = 0;
     for_each_candidate(ref, s, [&](id t) {
-      if (number >= c.seen && number - c.seen < most) f(t);
+      if (number >= c.seen && number - c.seen < max_count) f(t);
       ++number;
     });
-    c.seen += most;
+    c.seen += max_count;
     return number > c.seen;
   } else {
     auto const& around = swept_bounding_sphere(s);
     id t;
-    for (std::uint32_t n = 0; n < most; ++n) {
+    for (std::uint32_t n = 0; n < max_count; ++n) {
       if (!ref.next(around, c, t)) return false;
       f(t);
     }
@@ -123,12 +124,12 @@ struct per_sphere_query {
       block.for_each_thread([&](int thread_rank) {
         progress& p = own[thread_rank];
         std::size_t const first = base + static_cast<std::size_t>(thread_rank);
-        for (std::uint32_t room = items_per_thread; room != 0 && p.k < Block::items;) {
+        for (std::uint32_t capacity = items_per_thread; capacity != 0 && p.k < Block::items;) {
           std::size_t const i = first + static_cast<std::size_t>(p.k) * Block::num_threads;
           auto const sphere = pipeline.spheres[i];
-          bool const more = next_candidates(ref, sphere, p.at, room, [&](id t) {
+          bool const more = next_candidates(ref, sphere, p.at, capacity, [&](id t) {
             pipeline.push(block, s.pipeline, {static_cast<id>(i), t}, sphere);
-            --room;
+            --capacity;
           });
           if (more) break;
           ++p.k;
@@ -174,10 +175,10 @@ struct batched_per_sphere_query {
 
   template <class Block>
   struct scratch {
-    static constexpr std::uint32_t room = 64, few = 4;
+    static constexpr std::uint32_t capacity = 64, few = 4;
     pipeline_storage<Block> pipeline;
     candidate_batch<S> batch;
-    id found[room];
+    id found[capacity];
     std::uint32_t size;
   };
 
@@ -186,7 +187,7 @@ struct batched_per_sphere_query {
     pipeline.reset(s.pipeline, 0);
     s.batch.size = 0;
     bool const wants_one = wants_one_of_each(pipeline.output, 0);
-    std::uint32_t const most = wants_one ? s.few : s.room;
+    std::uint32_t const max_count = wants_one ? s.few : s.capacity;
     std::size_t const begin = block.index() * Block::items, size = pipeline.spheres.size();
     for (std::size_t i = begin; i < begin + Block::items && i < size; ++i) {
       auto const own = pipeline.spheres[i];
@@ -198,7 +199,7 @@ struct batched_per_sphere_query {
           multiversioned([&] {
             if (begins) at = ref.begin(around);
             s.size = 0;
-            more = next_candidates(ref, around, at, most, [&](id t) { s.found[s.size++] = t; });
+            more = next_candidates(ref, around, at, max_count, [&](id t) { s.found[s.size++] = t; });
           });
           begins = false;
           for (std::uint32_t k = 0; k < s.size; ++k) take(block, s, {static_cast<id>(i), s.found[k]}, own);
@@ -219,7 +220,7 @@ struct batched_per_sphere_query {
   void take(Block& block, scratch<Block>& s, pair p, Sphere const& own) const {
     if constexpr (in_batches<NarrowPhase, S>) {
       s.batch.add(p, pipeline.mesh[p.triangle], own);
-      if (s.batch.size == s.batch.room) flush(block, s);
+      if (s.batch.size == s.batch.capacity) flush(block, s);
     } else {
       pipeline.push(block, s.pipeline, p, own);
       pipeline.drain_if_full(block, s.pipeline);

@@ -58,9 +58,9 @@ class chunk_streamer<Space, Spheres, false> {
   template <class F>
   void for_each_chunk(Space const& space, Spheres const& spheres, std::size_t size, F const& f) {
     std::size_t const n = (spheres.size() - 1) / size + 1;
-    std::size_t const room = contiguous_ranges<Spheres>(spheres.subview(0, size)).size();
+    std::size_t const capacity = contiguous_ranges<Spheres>(spheres.subview(0, size)).size();
     for (std::size_t k = 0; k < std::min(n, staging_.size()); ++k) {
-      staging_[k].memory.reserve(space.resource(), room);
+      staging_[k].memory.reserve(space.resource(), capacity);
       staging_[k].reusable.record(
           space.stream());  // an earlier query may still read it; memory may come in stream order
     }

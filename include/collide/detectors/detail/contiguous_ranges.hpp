@@ -34,10 +34,10 @@ class contiguous_ranges {
     for (std::size_t k = 0; k < count_; ++k) copy(to + ranges_[k].begin, ranges_[k].from, length(ranges_[k]));
     Spheres copied = spheres_;
     copied.for_each_array([&](S const*& array, std::size_t stride) {
-      auto const holds = [&](range const& p) {
+      auto const has_it = [&](range const& p) {
         return p.stride == stride && !std::less<>{}(array, p.from) && std::less<>{}(array, p.from + p.width);
       };
-      range const& p = *std::find_if(ranges_, ranges_ + count_, holds);
+      range const& p = *std::find_if(ranges_, ranges_ + count_, has_it);
       array = to + p.begin + (array - p.from);
     });
     return copied;

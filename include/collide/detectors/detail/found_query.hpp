@@ -31,7 +31,7 @@ class pair_list {
     std::size_t const before = size_;
     if (before + n > memory_.capacity()) {
       buffer<pair> larger;
-      pair* const to = make_room(larger, space.resource(), before + n);
+      pair* const to = ensure_capacity(larger, space.resource(), before + n);
       space.for_each(before, copy_values<pair>{memory_.data(), to});
       space.synchronize();  // the old memory goes
       memory_ = std::move(larger);

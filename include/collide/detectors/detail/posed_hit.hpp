@@ -67,7 +67,7 @@ COLLIDE_HD hit<NarrowPhase, S> hit_of(pair p, moving_mesh<S> const& mesh, sphere
 template <class S, unsigned Group>
 struct list_near_bodies {
   moving_mesh<S> mesh;
-  S room;  ///< how far rounding may move what a body sees
+  S margin;  ///< how far rounding may move what a body sees
   sphere_view<S> spheres;
   std::uint32_t* count;
   id* numbers;
@@ -83,7 +83,7 @@ struct list_near_bodies {
     }
     for (int frame = mesh.first_frame; frame < mesh.frame_count; ++frame) {
       body_frame<S> const& f = mesh.frames[frame];
-      for (unsigned k = 0; k < Group; ++k) near[k] |= f.is_far(vec3<S>(x[k], y[k], z[k]), reach[k], room) ? 0u : 1u;
+      for (unsigned k = 0; k < Group; ++k) near[k] |= f.is_far(vec3<S>(x[k], y[k], z[k]), reach[k], margin) ? 0u : 1u;
     }
     for (unsigned k = 0; k < n; ++k) {
       if (near[k] != 0) numbers[fetch_add(count, 1u)] = static_cast<id>(first + k);
@@ -96,7 +96,7 @@ template <class S>
 struct list_near_body {
   moving_mesh<S> mesh;
   int frame;
-  S room;
+  S margin;
   sphere_view<S> spheres;
   id const* from;
   std::uint32_t* count;
@@ -107,7 +107,7 @@ struct list_near_body {
   COLLIDE_HD void operator()(std::size_t i) const {
     id const number = from[i];
     sphere<S> const own = spheres[number];
-    if (mesh.frames[frame].is_far(own.centre, own.radius, room)) return;
+    if (mesh.frames[frame].is_far(own.centre, own.radius, margin)) return;
     sphere<S> const seen = mesh.seen_from(frame, own, 1);
     std::size_t const slot = fetch_add(count, 1u);
     numbers[slot] = number;

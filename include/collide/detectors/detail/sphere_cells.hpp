@@ -161,8 +161,8 @@ struct measure_levels {
   COLLIDE_HD void operator()(std::size_t i) const {
     sphere_size const s(from[i]);
     if (!s.is_valid()) return;
-    std::uint64_t* const most = largest + s.level();
-    if (load_relaxed(most) < to_bits(s.size)) fetch_max(most, to_bits(s.size));
+    std::uint64_t* const largest_of_level = largest + s.level();
+    if (load_relaxed(largest_of_level) < to_bits(s.size)) fetch_max(largest_of_level, to_bits(s.size));
   }
 };
 

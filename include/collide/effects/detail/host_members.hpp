@@ -109,10 +109,10 @@ double longest_step_of(Effects const& effects, smallest_radii const& radii) {
 /// Throws `error` if a step is too long for an effect.
 template <class E, class Effects, class S>
 void check_time_step_of(Effects const& effects, S dt, smallest_radii const& radii) {
-  double const most = longest_step_of<E>(effects, radii);
-  if (!(radii.of_all > 0 && static_cast<double>(dt) > most)) return;
+  double const longest = longest_step_of<E>(effects, radii);
+  if (!(radii.of_all > 0 && static_cast<double>(dt) > longest)) return;
   throw error("collide: simulation: the time dt of a step, " + text_of(dt) +
-              ", is longer than an effect allows with the smallest particles, " + text_of(most) +
+              ", is longer than an effect allows with the smallest particles, " + text_of(longest) +
               ": take largest_time_step(simulation)");
 }
 
@@ -122,7 +122,7 @@ struct no_bodies {
 
   static std::size_t bytes() { return 0; }
   static std::size_t size() { return 0; }
-  static int room() { return 0; }
+  static int margin() { return 0; }
   static constexpr bool are_driven() { return false; }
   static constexpr bool are_placed() { return false; }
   static void place(bool) {}
@@ -219,8 +219,8 @@ smallest_radii smallest_radii_of(Simulation const& simulation, radius_range<S> c
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       auto const own = radii.empty() ? found.of_all : static_cast<double>(radii[i]);
       found.largest_material = std::max<int>(found.largest_material, numbers[i]);
-      double& least = found.of_material[std::min<int>(numbers[i], smallest_radii::numbers - 1)];
-      if (own >= 0) least = std::min(least, own);
+      double& of_number = found.of_material[std::min<int>(numbers[i], smallest_radii::numbers - 1)];
+      if (own >= 0) of_number = std::min(of_number, own);
     }
   }
   return found;

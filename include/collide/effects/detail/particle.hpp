@@ -151,7 +151,7 @@ struct single_rank {};
 
 /// Numbers at `particle_state::time`: the time, then those of a source: how many particles have come due, what part of
 /// the next one is, how many came in this step; how many overlapped others, and how many were not born.
-inline constexpr std::size_t clock_made = 1, clock_part = 2, clock_made_now = 3, clock_overlapping = 4,
+inline constexpr std::size_t clock_made = 1, clock_fraction = 2, clock_made_now = 3, clock_overlapping = 4,
                              clock_not_born = 5, clock_size = 6;
 
 /// In `alive` from where a source makes a particle until particles meet: it is there, and new; and it overlaps others.
@@ -161,7 +161,7 @@ COLLIDE_HD_INLINE bool is_newborn(std::uint8_t mark) { return mark == newborn ||
 
 /// How many particles a source makes in a step in which `due` are due. A part of 1e-9 of one is put down to rounding.
 COLLIDE_HD_INLINE std::uint64_t begin_in_step(double const* time, double due) {
-  double const whole = std::floor(time[clock_part] + due + 1e-9);
+  double const whole = std::floor(time[clock_fraction] + due + 1e-9);
   return static_cast<std::uint64_t>(whole < 0x1p53 ? whole : 0x1p53);
 }
 

@@ -121,9 +121,9 @@ COLLIDE_HD_INLINE response gentle_response(double vv, double va, double aa, resi
   double const of_v = left + mul_rn(share, gained - across);
   double const ss =
       mul_rn(mul_rn(of_v, of_v), vv) + mul_rn(across, mul_rn(2 * of_v, va) + mul_rn(across, aa));  // speed afterwards
-  double const most = mul_rn(mul_rn(ss, inverse) + length, 0.5);                                   // is not above this
+  double const limit = mul_rn(mul_rn(ss, inverse) + length, 0.5);                                  // is not above this
   double const force =
-      mul_rn(r.linear, r.linear) + mul_rn(q, mul_rn(2 * r.linear, most) + mul_rn(q, ss));  // square, by speed
+      mul_rn(r.linear, r.linear) + mul_rn(q, mul_rn(2 * r.linear, limit) + mul_rn(q, ss));  // square, by speed
   constexpr double rounding = 1 + 8e-15;
   int const bounded = int{ss <= mul_rn(vv, rounding)} | int{mul_rn(ss, force) <= mul_rn(aa, rounding)};
   bool const right = (int{aa <= r.gentle} & int{kept + mul_rn(share, top) >= 0} & bounded) != 0;
@@ -136,9 +136,9 @@ COLLIDE_HD_RARE vec3<double> resisted_strongly(vec3<double> const& v, vec3<doubl
                                                double quadratic) {
   double const a = length_of(push), speed = length_of(v);
   vec3<double> const along = a > 0 ? scaled(push, div_rn(1, a)) : scaled(v, speed > 0 ? div_rn(1, speed) : 0);
-  double const part = dot(v, along);
-  if (length_of(v - scaled(along, part)) <= 1e-15 * speed) {
-    return scaled(along, velocity_along(part, a, linear, quadratic));
+  double const along_it = dot(v, along);
+  if (length_of(v - scaled(along, along_it)) <= 1e-15 * speed) {
+    return scaled(along, velocity_along(along_it, a, linear, quadratic));
   }
   vec3<double> const ahead = v + push;
   double const gain = dot(push, ahead), to = length_of(ahead);  // how fast the speed grows is gain / to
@@ -148,8 +148,8 @@ COLLIDE_HD_RARE vec3<double> resisted_strongly(vec3<double> const& v, vec3<doubl
   decay const d = decay_after(rate);
   vec3<double> const after = response{d.left, rate > 0 ? div_rn(d.lost, rate) : 1}(v, push);
   double const terminal = div_rn(2 * a, linear + sqrt_rn(mul_rn(linear, linear) + mul_rn(4 * quadratic, a)));
-  double const found = length_of(after), most = max(speed, terminal);
-  return found > most ? scaled(after, div_rn(most, found)) : after;
+  double const found = length_of(after), limit = max(speed, terminal);
+  return found > limit ? scaled(after, div_rn(limit, found)) : after;
 }
 
 /// The velocity after a step against any resistance: `resisted_strongly`, but exact if it is linear, and fast if the

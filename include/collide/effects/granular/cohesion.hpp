@@ -37,7 +37,7 @@ struct dmt {
 
   /// The least overlap that holds.
   template <class S>
-  COLLIDE_HD_INLINE S least_overlap(granular_pair<S> const&, detail::contact_material const&) const {
+  COLLIDE_HD_INLINE S min_overlap(granular_pair<S> const&, detail::contact_material const&) const {
     return std::numeric_limits<S>::min();
   }
 
@@ -70,19 +70,19 @@ struct jkr {
     S const k = detail::sqrt_rn(S(3.141592653589793) * gamma / young);
     auto const larger_root = [](auto r, auto of, auto overlap) { return root(r, of, overlap); };
     S const x = detail::in_each_lane(larger_root, p.radius, k, p.overlap);
-    auto const holds = x > 0;  // else they have parted
+    auto const touches = x > 0;  // else they have parted
     S const a = x * x, cube = a * a * a;
-    n.contact_radius = detail::either(holds, a, S(0));
-    n.stiffness = detail::either(holds, S(2 * young * a), S(0));
+    n.contact_radius = detail::either(touches, a, S(0));
+    n.stiffness = detail::either(touches, S(2 * young * a), S(0));
     n.elastic =
-        detail::either(holds, S(S(4.0 / 3) * young * cube / p.radius - 4 * k * young * detail::sqrt_rn(cube)), S(0));
-    n.pull_off = detail::either(holds, S(S(9.42477796076938) * gamma * p.radius), n.pull_off);
-    n.goes_on = holds;
+        detail::either(touches, S(S(4.0 / 3) * young * cube / p.radius - 4 * k * young * detail::sqrt_rn(cube)), S(0));
+    n.pull_off = detail::either(touches, S(S(9.42477796076938) * gamma * p.radius), n.pull_off);
+    n.goes_on = touches;
   }
 
   /// The least overlap that holds: -3/2 k x with x^3 = k R* / 2 and k^2 = pi gamma / E*, less what rounding takes.
   template <class S>
-  COLLIDE_HD_INLINE S least_overlap(granular_pair<S> const& p, detail::contact_material const& m) const {
+  COLLIDE_HD_INLINE S min_overlap(granular_pair<S> const& p, detail::contact_material const& m) const {
     S const k = detail::sqrt_rn(S(3.141592653589793) * S(m.cohesion) / S(m.young)), cube = k * p.radius / 2;
     if (!(cube > 0)) return 0;
     S x = detail::max(detail::sqrt_rn(p.radius), k);  // above the root, to which Newton's method descends
@@ -97,8 +97,8 @@ struct jkr {
   template <class S>
   static COLLIDE_HD_INLINE S root(S r, S k, S overlap) {
     S x = detail::sqrt_rn(detail::sqrt_rn(r * detail::max(overlap, S(0))));
-    S least = detail::sqrt_rn(detail::sqrt_rn(k * r));  // grows until it is above the root
-    x = detail::max(x, least);
+    S lower = detail::sqrt_rn(detail::sqrt_rn(k * r));  // grows until it is above the root
+    x = detail::max(x, lower);
     while (x * x * x * x / r - 2 * k * x < overlap) x *= 2;
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 60; ++i) {

@@ -97,7 +97,7 @@ class one_material {
   void check_parameters() const {}
   /// f(solid, smallest radius of it).
   template <class F>
-  double least(smallest_radii const& radii, F const& f) const {
+  double min_of(smallest_radii const& radii, F const& f) const {
     return f(solid_, radii.of_all);
   }
 
@@ -194,7 +194,7 @@ class materials {
   }
   /// The least of f(solid, smallest radius of it) of all solids that particles are of; infinite if there are none.
   template <class F>
-  double least(smallest_radii const& radii, F const& f) const {
+  double min_of(smallest_radii const& radii, F const& f) const {
     double found = std::numeric_limits<double>::infinity();
     for (int i = 0; i < smallest_radii::numbers; ++i) {
       double const r = radii.of_material[i];

@@ -62,10 +62,10 @@ COLLIDE_HD_INLINE contact<S> contact_at_point(contact_without_point const& m, ve
                                               vec3<double> const& centre) {
   vec3<double> point = centre + scaled(closest, div_rn(1.0, scale));
   if (!is_finite(point)) {  // the way there is longer than the largest number, or rounded up to more than that
-    constexpr double most = std::numeric_limits<double>::max() / 4;
+    constexpr double limit = std::numeric_limits<double>::max() / 4;
     point = scaled(centre, 0.25) + scaled(closest, div_rn(0.25, scale));
     COLLIDE_UNROLL
-    for (int k = 0; k < 3; ++k) point[k] = mul_rn(4.0, min(max(point[k], -most), most));
+    for (int k = 0; k < 3; ++k) point[k] = mul_rn(4.0, min(max(point[k], -limit), limit));
   }
   return {no_id,
           no_id,

@@ -106,7 +106,7 @@ COLLIDE_HD inline void project_onto_boundary_compensated(long_triangle const& l,
                                                          long_projection& found) {
   // guard: compensated-nearest
   constexpr double none = std::numeric_limits<double>::max(), error = 0x1p-43, error_squared = 0x1p-96;
-  double square[6], least = none;
+  double square[6], lowest = none;
   COLLIDE_UNROLL
   for (int i = 0; i < 3; ++i) {
     vec3<double> const& v = r.corner[i];
@@ -122,12 +122,12 @@ COLLIDE_HD inline void project_onto_boundary_compensated(long_triangle const& l,
         square[3 + i] = div_rn(dot(c, c), ee);
       }
     }
-    least = min(least, min(square[i], square[3 + i]));
+    lowest = min(lowest, min(square[i], square[3 + i]));
   }
   found = {-1, {none, 0}, {0, 0, 0}, 1, found.certain};
   COLLIDE_NO_UNROLL
   for (int projection = 0; projection < 6; ++projection) {
-    if (!(square[projection] <= least + error)) continue;
+    if (!(square[projection] <= lowest + error)) continue;
     int const i = projection % 3;
     bool const is_corner = projection < 3;
     long_vector const c = is_corner ? l.corner[i] : cross(l.corner[i], l.edge[i]);
@@ -168,11 +168,11 @@ COLLIDE_HD_NOINLINE inline bool contact_compensated(triangle<double> const& t, m
   double_double const distance = scaled(nearest.distance, div_rn(1.0, scale));
   double const depth = depth_of(s.radius, distance);
   // guard: compensated-depth
-  double const least = exact_depth ? min(away, mul_rn(depth < 0 ? -depth : depth, scale)) : away;
+  double const lowest = exact_depth ? min(away, mul_rn(depth < 0 ? -depth : depth, scale)) : away;
   // guard: compensated-length
-  if (!(mul_rn(mul_rn(least, least), nearest.sine_squared) >= 0x1p-84)) return false;
+  if (!(mul_rn(mul_rn(lowest, lowest), nearest.sine_squared) >= 0x1p-84)) return false;
   // guard: compensated-doubt
-  if (!nearest.certain && !(mul_rn(mul_rn(away, least), nearest.sine_squared) >= 0x1p-40)) return false;
+  if (!nearest.certain && !(mul_rn(mul_rn(away, lowest), nearest.sine_squared) >= 0x1p-40)) return false;
   int const index = nearest.number % 3;
   vec3<double> const normal = unit(nearest.normal);
   closest = nearest.number < 3 ? r.corner[index] : scaled<double>(normal, -away);

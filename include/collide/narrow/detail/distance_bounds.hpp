@@ -64,11 +64,11 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
                      ac = difference_in_double(t.c, t.a);
   double const size = max(max(max_norm(a), max_norm(b)), max_norm(c));
   // flushed numbers of S are below u M and u L, and no product of six numbers is out of range
-  constexpr double least = sizeof(S) == sizeof(float) ? 0x1p-70 : 0x1p-120, most = 0x1p140;
-  double const length = max(max(max_norm(ab), max_norm(ac)), least);
+  constexpr double smallest = sizeof(S) == sizeof(float) ? 0x1p-70 : 0x1p-120, largest = 0x1p140;
+  double const length = max(max(max_norm(ab), max_norm(ac)), smallest);
   // guard: bounds-smallest
-  if (!(size >= least && size <= most)) {
-    found = {0, size <= most ? mul_rn(2.0, size) + 2 * least : none, 6, false};
+  if (!(size >= smallest && size <= largest)) {
+    found = {0, size <= largest ? mul_rn(2.0, size) + 2 * smallest : none, 6, false};
     return true;
   }
   double const d1 = -dot_mul_add(ab, a), d2 = -dot_mul_add(ac, a), d3 = -dot_mul_add(ab, b), d4 = -dot_mul_add(ac, b),

@@ -96,8 +96,8 @@ COLLIDE_HD_NOINLINE inline double conservative_advancement(triangle<double> cons
   double time = 0;
   for (int i = 0; i < enough; ++i) {
     vec3<double> const g = closest_to_origin(at_time(l, time), n).point;
-    double const least = min(min(dot(l.shape.a, g), dot(l.shape.b, g)), dot(l.shape.c, g));
-    double const away = least - mul_rn(outer, sqrt_rn(dot(g, g))), nearer = dot(l.path, g);
+    double const lowest = min(min(dot(l.shape.a, g), dot(l.shape.b, g)), dot(l.shape.c, g));
+    double const away = lowest - mul_rn(outer, sqrt_rn(dot(g, g))), nearer = dot(l.path, g);
     if (!(away > 0 && nearer > 0)) return time;
     double const next = div_rn(away, nearer);
     if (!(next > time)) return time;

@@ -82,7 +82,7 @@ COLLIDE_HD_INLINE bool is_level(triangle<double> const& t, vec3<double> const& p
 /// The foot in numbers of twice the digits. False if these do not suffice.
 COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<double> const& point, int foot,
                                                 measured_foot& found) {
-  constexpr double least = 0x1p-88;  // of a square: half of the digits, and 2^-56 left of the rest
+  constexpr double smallest = 0x1p-88;  // of a square: half of the digits, and 2^-56 left of the rest
   sphere<double> const centre{point, 0};
   double const scale = to_unit_range(to_local<double>(t, centre), t, centre).scale;
   // guard: measured-scale
@@ -100,7 +100,7 @@ COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<
   } else if (foot < 6) {
     long_vector const c = cross(l.corner[i], l.edge[i]);
     double_double const square = dot(c, c), by = dot(l.edge[i], l.edge[i]);
-    double const limit = mul_rn(least, max(dot(r.corner[i], r.corner[i]), 1.0));
+    double const limit = mul_rn(smallest, max(dot(r.corner[i], r.corner[i]), 1.0));
     // guard: measured-edge
     if (!(by.high >= limit && square.high >= mul_rn(limit, by.high))) return false;
     distance = root(square / by);
@@ -110,10 +110,10 @@ COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<
     long_vector const n = cross(l.edge[0], l.edge[1]);
     double_double const height = dot(l.corner[0], n), by = dot(n, n);
     double const longest = max(max(r.length_squared[0], r.length_squared[1]), r.length_squared[2]);
-    double const limit = mul_rn(mul_rn(least, 64.0), mul_rn(longest, longest));
+    double const limit = mul_rn(mul_rn(smallest, 64.0), mul_rn(longest, longest));
     // guard: measured-face
     bool const is_on = is_level(t, point);
-    if (!(longest >= 0x1p-160 && by.high >= mul_rn(least * 64, longest) &&
+    if (!(longest >= 0x1p-160 && by.high >= mul_rn(smallest * 64, longest) &&
           (is_on || mul_rn(height.high, height.high) >= limit)))
       return false;
     distance = is_on ? double_double{0, 0} : height / root(by);

@@ -17,10 +17,10 @@ namespace collide::detail {
 /// A number that is not below `x`, in `S`, though subnormal numbers may be flushed to zero. `x` is not negative.
 template <class S>
 COLLIDE_HD_INLINE S rounded_up(double x) {
-  constexpr double least = static_cast<double>(std::numeric_limits<S>::min());
-  constexpr double most = static_cast<double>(std::numeric_limits<S>::max());
-  double const above = max(mul_rn(x, 1 + 4 * static_cast<double>(ieee_traits<S>::unit_roundoff)), least);
-  return above < most ? static_cast<S>(above) : std::numeric_limits<S>::infinity();
+  constexpr double smallest = static_cast<double>(std::numeric_limits<S>::min());
+  constexpr double largest = static_cast<double>(std::numeric_limits<S>::max());
+  double const above = max(mul_rn(x, 1 + 4 * static_cast<double>(ieee_traits<S>::unit_roundoff)), smallest);
+  return above < largest ? static_cast<S>(above) : std::numeric_limits<S>::infinity();
 }
 
 /// The result where there is no triangle.

@@ -35,17 +35,17 @@ class solid_angle_sum {
     double const a = sqrt_rn(dot(l.a, l.a)), b = sqrt_rn(dot(l.b, l.b)), c = sqrt_rn(dot(l.c, l.c));
     double const product = mul_rn(mul_rn(a, b), c), across = dot(l.a, cross(l.b, l.c));
     double const along = ((product + mul_rn(dot(l.a, l.b), c)) + mul_rn(dot(l.b, l.c), a)) + mul_rn(dot(l.c, l.a), b);
-    double const beside = across < 0 ? -across : across, most = max(beside, along < 0 ? -along : along);
+    double const beside = across < 0 ? -across : across, larger = max(beside, along < 0 ? -along : along);
     double const limit = mul_rn(product, 80 * u);
-    if (!(most > 8 * limit && most > 0x1p-900) || (along < 0 && beside <= limit)) {
+    if (!(larger > 8 * limit && larger > 0x1p-900) || (along < 0 && beside <= limit)) {
       error += all;
       return;
     }
     // as far as the point is away, the angle changes by the quotient, and by pi / 2 at most for each of the two
-    error += div_rn(mul_rn(limit, 4.0), most) + 16 * u;
-    double const scale = inverse_power_of_two(most);
+    error += div_rn(mul_rn(limit, 4.0), larger) + 16 * u;
+    double const scale = inverse_power_of_two(larger);
     multiply(mul_rn(along, scale), mul_rn(across, scale));
-    if (++held_ == 64) settle();
+    if (++count_ == 64) settle();
   }
 
   /// Adds what is not in `angle` yet.
@@ -53,7 +53,7 @@ class solid_angle_sum {
     constexpr double u = ieee_traits<double>::unit_roundoff, half = 3.141592653589793;
     angle += mul_rn(2.0, angle_of(y_, x_) + mul_rn(2 * half, static_cast<double>(turns_)));
     error += mul_rn(2 * u, (angle < 0 ? -angle : angle) + 256);
-    x_ = 1, y_ = 0, turns_ = 0, held_ = 0;
+    x_ = 1, y_ = 0, turns_ = 0, count_ = 0;
   }
 
  private:
@@ -66,8 +66,8 @@ class solid_angle_sum {
     x_ = along, y_ = across;
   }
 
-  double x_ = 1, y_ = 0;      ///< half of what is not in `angle` yet is the angle of this number,
-  int turns_ = 0, held_ = 0;  ///< with so many whole turns, of so many triangles
+  double x_ = 1, y_ = 0;       ///< half of what is not in `angle` yet is the angle of this number,
+  int turns_ = 0, count_ = 0;  ///< with so many whole turns, of so many triangles
 };
 
 /// Moments of the normals of some triangles about a centre. Coordinates are scaled to at most 2.
@@ -84,9 +84,9 @@ struct normal_moments {
   COLLIDE_HD static normal_moments of(triangle<double> const& t) {
     normal_moments m;
     vec3<double> const u = t.b - t.a, v = t.c - t.a;
-    m.centre = t.a + scaled(vec3<double>(u + v), third_part);
+    m.centre = t.a + scaled(vec3<double>(u + v), one_third);
     vec3<double> const corners[3] = {t.a - m.centre, t.b - m.centre, t.c - m.centre};
-    vec3<double> const middle = scaled(corners[0] + corners[1] + corners[2], third_part);  // the rounding of the centre
+    vec3<double> const middle = scaled(corners[0] + corners[1] + corners[2], one_third);  // the rounding of the centre
     m.normal = scaled(cross(u, v), 0.5);
     m.area = sqrt_rn(dot(m.normal, m.normal));
     m.lower = min(min(t.a, t.b), t.c);
@@ -104,7 +104,7 @@ struct normal_moments {
     }
     m.squares = mul_rn(m.area, largest);
     m.radius = mul_rn(sqrt_rn(largest), wider);
-    m.add_products(spread, m.normal, third_part);
+    m.add_products(spread, m.normal, one_third);
     return m;
   }
 
@@ -127,8 +127,8 @@ struct normal_moments {
       }
     }
     for (int n = 0; n < 10; ++n) third[n] += other.third[n];
-    add_products(products, other.normal, third_part);
-    add_products(other.second, away, 2 * third_part);
+    add_products(products, other.normal, one_third);
+    add_products(other.second, away, 2 * one_third);
   }
 
   /// Lets the box tell of the radius, where that is less.
@@ -162,7 +162,7 @@ struct normal_moments {
   }
 
  private:
-  static constexpr double third_part = 1.0 / 3, wider = 1 + 0x1p-40;
+  static constexpr double one_third = 1.0 / 3, wider = 1 + 0x1p-40;
 
   static COLLIDE_HD double trace(double const (&m)[6]) { return m[0] + m[3] + m[5]; }
 

@@ -13,17 +13,17 @@ namespace collide::detail {
 /// spheres with one centre: one around its path, and one in the middle of it.
 template <class S>
 struct candidate_batch {
-  static constexpr int room = 64;
+  static constexpr int capacity = 64;
 
   int size;
-  pair ids[room];
-  S corners[9][room];
-  S centre[3][room];
-  S radius[room];
-  S midpoint_radius[room];               ///< of spheres that move
-  moving_sphere<S> const* moving[room];  ///< the sphere itself, if it moves
-  std::int32_t verdicts[room];
-  std::uint8_t uncertain[room];
+  pair ids[capacity];
+  S corners[9][capacity];
+  S centre[3][capacity];
+  S radius[capacity];
+  S midpoint_radius[capacity];               ///< of spheres that move
+  moving_sphere<S> const* moving[capacity];  ///< the sphere itself, if it moves
+  std::int32_t verdicts[capacity];
+  std::uint8_t uncertain[capacity];
 
   void add(pair p, triangle<S> const& t, sphere<S> const& s) {
     int const k = size++;

@@ -40,8 +40,8 @@ class deferred_pair_buffer {
 
  private:
   static std::size_t capacity_for(std::size_t spheres) {
-    constexpr std::size_t least = 1024, most = std::size_t{1} << 22;
-    return least + min(spheres, most);
+    constexpr std::size_t min_count = 1024, max_count = std::size_t{1} << 22;
+    return min_count + min(spheres, max_count);
   }
 
   buffer<deferred_pairs::counters> count_;
@@ -77,9 +77,9 @@ struct resolve_deferred {
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     std::uint64_t const total = deferred.count->total;
     // guard: listed
-    bool const all_found_room = total <= deferred.capacity;
+    bool const all_were_stored = total <= deferred.capacity;
     // guard: second-time
-    std::uint64_t const work = all_found_room ? total : std::uint64_t{pipeline.spheres.size()} * pipeline.mesh.size();
+    std::uint64_t const work = all_were_stored ? total : std::uint64_t{pipeline.spheres.size()} * pipeline.mesh.size();
     std::uint64_t const busy = min<std::uint64_t>(blocks, (work + Block::num_threads - 1) / Block::num_threads);
     if (block.index() >= busy) {
       if (work == 0 && block.index() == 0) {
@@ -98,10 +98,10 @@ struct resolve_deferred {
         std::uint64_t const i = base + static_cast<std::uint64_t>(thread_rank);
         hits[thread_rank] = false;
         if (i >= work) return;
-        own[thread_rank] =
-            all_found_room ? deferred.pairs[i]
-                           : pair{static_cast<id>(i / pipeline.mesh.size()), static_cast<id>(i % pipeline.mesh.size())};
-        hits[thread_rank] = is_hit(own[thread_rank], all_found_room);
+        own[thread_rank] = all_were_stored ? deferred.pairs[i]
+                                           : pair{static_cast<id>(i / pipeline.mesh.size()),
+                                                  static_cast<id>(i % pipeline.mesh.size())};
+        hits[thread_rank] = is_hit(own[thread_rank], all_were_stored);
       });
       pipeline.push_hits(block, s.pipeline, own, hits);
     }

@@ -153,11 +153,11 @@ class bisection {
       all.resize(6 * n);
       for (std::size_t i = 0; i < at.size(); ++i) {
         if (at[i] < first) continue;
-        std::uint64_t* const most = mine.data() + 6 * (at[i] - first);
+        std::uint64_t* const largest = mine.data() + 6 * (at[i] - first);
         for (std::size_t k = 0; k < 3; ++k) {
           double const x = static_cast<double>(centres[3 * i + k]);
-          most[k] = max(most[k], to_ordered_bits(-x));
-          most[3 + k] = max(most[3 + k], to_ordered_bits(x));
+          largest[k] = max(largest[k], to_ordered_bits(-x));
+          largest[3 + k] = max(largest[3 + k], to_ordered_bits(x));
         }
       }
     });
@@ -183,10 +183,10 @@ class bisection {
     }
   }
 
-  static ruler ruler_of(std::uint64_t const* most) {
+  static ruler ruler_of(std::uint64_t const* largest) {
     ruler longest;
     for (int k = 0; k < 3; ++k) {
-      double const lower = -from_ordered_bits<double>(most[k]), upper = from_ordered_bits<double>(most[3 + k]);
+      double const lower = -from_ordered_bits<double>(largest[k]), upper = from_ordered_bits<double>(largest[3 + k]);
       double const half = upper / 2 - lower / 2;
       if (half > longest.half) longest = {k, lower, half};
     }

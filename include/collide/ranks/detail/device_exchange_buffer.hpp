@@ -78,7 +78,7 @@ class device_exchange_buffer {
   template <class Space>
   T* resize(Space const& space) {
     size_ = static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
-    return make_room(items_, space.resource(), size_);
+    return ensure_capacity(items_, space.resource(), size_);
   }
 
   std::size_t size() const { return size_; }
@@ -87,7 +87,7 @@ class device_exchange_buffer {
   /// Copies the items to the host, if that does not see them, and waits.
   template <class Space>
   void to_host(Space const& space) {
-    make_host_room(space);
+    ensure_host_capacity(space);
     if constexpr (!Space::host_accessible) space.copy_to_host(on_host_.data(), data(), size_);
   }
   /// Copies them from the host. Waits.
@@ -97,7 +97,7 @@ class device_exchange_buffer {
   }
   /// Makes room for them on the host.
   template <class Space>
-  void make_host_room(Space const& space) {
+  void ensure_host_capacity(Space const& space) {
     if constexpr (!Space::host_accessible) on_host_.resize(space, size_);
     host_ = Space::host_accessible ? data() : on_host_.data();
   }
@@ -182,7 +182,7 @@ class device_exchange {
   template <class T>
   void expect(device_exchange_buffer<T>& in) const {
     in.resize(space_);
-    if (!is_direct()) in.make_host_room(space_);
+    if (!is_direct()) in.ensure_host_capacity(space_);
   }
 
  private:

@@ -92,8 +92,8 @@ class divided_mesh {
       exchange_buffer<numbered_triangle<S>> sorted;
       fill_exchange_buffer(sorted, ranks.size(), [&](auto const& put) {
         for (std::size_t i = 0; i < places.size(); ++i) {
-          std::uint64_t const begin = places[i] == 0 ? 0 : ends[places[i] - 1], room = ends[places[i]] - begin;
-          std::uint64_t const at = begin + out.items[i].number * std::uint64_t{0x9e3779b1} % room;
+          std::uint64_t const begin = places[i] == 0 ? 0 : ends[places[i] - 1], capacity = ends[places[i]] - begin;
+          std::uint64_t const at = begin + out.items[i].number * std::uint64_t{0x9e3779b1} % capacity;
           put(static_cast<int>(at * n / all), out.items[i]);
         }
       });

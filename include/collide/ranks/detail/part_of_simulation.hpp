@@ -308,7 +308,7 @@ class part_of_simulation {
     knows_others_ = false;
     std::vector<std::uint32_t> const leaving = rising_places(left);
     std::size_t const before = own(), after = before - leaving.size() + coming.size();
-    make_room(after);
+    ensure_capacity(after);
     std::vector<std::uint32_t> to(leaving.begin(),
                                   leaving.begin() + static_cast<std::ptrdiff_t>(min(leaving.size(), coming.size())));
     for (std::size_t i = before; to.size() < coming.size(); ++i) to.push_back(static_cast<std::uint32_t>(i));
@@ -321,7 +321,7 @@ class part_of_simulation {
   /// Prepares for copies of so many particles of other ranks, where others have some of `border`, and keeps where its
   /// own are.
   void expect_copies(std::size_t n, std::size_t border) {
-    make_room(own() + n);
+    ensure_capacity(own() + n);
     copies_ = n;
     if constexpr (any_pair_contact) {
       simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_, n, border);
@@ -384,18 +384,18 @@ class part_of_simulation {
 
   /// Numbers the particles, of which `n` are this rank's, and free places behind them.
   void start(std::size_t n, global_counts const& all, radii_of_all<S> const& radii) {
-    std::size_t const room = n + static_cast<std::size_t>(all.free_size);
-    describe(room, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), radii.common);
-    space().for_each(room, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free,
-                                                        simulation_.effects_.source_radius()});
+    std::size_t const capacity = n + static_cast<std::size_t>(all.free_size);
+    describe(capacity, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), radii.common);
+    space().for_each(capacity, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free,
+                                                            simulation_.effects_.source_radius()});
     S const widest = radii.widest;
     simulation_.radii_ = radii.range;
     skin_ = skin_fraction * 2 * widest;
     reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
     copies_ = 0;
     knows_others_ = false;
-    if constexpr (remembers_pairs) simulation_.neighbours_.clear(space(), room, radii.range);
-    if constexpr (remembers_surfaces) simulation_.surfaces_.clear(space(), room);
+    if constexpr (remembers_pairs) simulation_.neighbours_.clear(space(), capacity, radii.range);
+    if constexpr (remembers_surfaces) simulation_.surfaces_.clear(space(), capacity);
   }
 
   /// Moves the last particles to the places of those that have left, from the `filled`-th on.
@@ -420,23 +420,23 @@ class part_of_simulation {
   }
 
   /// Room for so many particles; the rank's own stay.
-  void make_room(std::size_t n) {
+  void ensure_capacity(std::size_t n) {
     if (n <= capacity_) return;
     state_type const old = simulation_.state_;
     double clock[clock_size] = {};
     if (old.time != nullptr) space().copy_to_host(clock, old.time, clock_size);
     rows<all_columns> kept;
     pack_on_host(space(), old, places_from{0}, old.own, kept);
-    std::size_t const room = n + n / 4;
+    std::size_t const capacity = n + n / 4;
     capacity_ = 0;
-    simulation_.reserve(room);
-    capacity_ = room;
+    simulation_.reserve(capacity);
+    capacity_ = capacity;
     describe(old.own, old.all_size, old.all_placed, old.common_radius);
     if constexpr (Simulation::has_begin_step) {
       simulation_.state_.time = simulation_.device_time_.data();
       space().copy_from_host(simulation_.state_.time, clock, clock_size);
     }
-    space().for_each(padded_size(room), init_particles<S, all_columns>{simulation_.state_, {}, nullptr, S(0)});
+    space().for_each(padded_size(capacity), init_particles<S, all_columns>{simulation_.state_, {}, nullptr, S(0)});
     unpack_from_host(space(), state(), places_from{0}, kept);
     simulation_.is_set_ = true;
   }

@@ -152,12 +152,12 @@ class particle_exchange {
   /// Cuts subdomains if there are none, or one has many more particles than it should.
   template <class Ranks>
   void divide(Ranks const& ranks, Part& part) {
-    std::uint64_t mine = 0, most = 0, sum = 0;
+    std::uint64_t mine = 0, largest = 0, sum = 0;
     together(ranks, [&] { mine = part.count_somewhere(); });
-    ranks.reduce(&mine, &most, 1, reduction::max);
+    ranks.reduce(&mine, &largest, 1, reduction::max);
     ranks.reduce(&mine, &sum, 1, reduction::sum);
     std::uint64_t const fair = sum / static_cast<std::uint64_t>(ranks.size());
-    if (is_divided_ && most <= fair + fair / 4 + 16) return;
+    if (is_divided_ && largest <= fair + fair / 4 + 16) return;
     std::vector<S> there;
     together(ranks, [&] { there = part.centres_somewhere(); });
     bricks_.build(ranks, there);

@@ -108,7 +108,7 @@ struct find_moved {
   State state;
   Space space;
   last_places<S> last;
-  S most;
+  S limit;
   std::uint32_t* flag;
 
   COLLIDE_HD void operator()(std::size_t i) const {
@@ -121,7 +121,7 @@ struct find_moved {
     if (!is_finite(now)) return;
     bring_together(space, now, then);
     vec3<S> const moved = now - then;
-    bool const stayed = is_finite(moved) && dot(moved, moved) <= mul_rn(most, most);
+    bool const stayed = is_finite(moved) && dot(moved, moved) <= mul_rn(limit, limit);
     if (!stayed) store_relaxed(flag, 1u);
   }
 };

@@ -25,10 +25,10 @@ COLLIDE_HD aabb<double> reach_of(sphere<S> const& s, vec3<S> const& displacement
   for (int k = 0; k < 3; ++k) {
     double const from = static_cast<double>(s.centre[k]), along = static_cast<double>(displacement[k]);
     double const size = (from < 0 ? -from : from) + (along < 0 ? -along : along);
-    double const most = r * (1 + 16 * unit) + 16 * unit * (extent + (along < 0 ? -along : along)) + 0x1p-48 * size +
-                        2 * sqrt_rn(static_cast<double>(tiny));
-    box.lower[k] = min(from, from + along) - most;
-    box.upper[k] = max(from, from + along) + most;
+    double const reached = r * (1 + 16 * unit) + 16 * unit * (extent + (along < 0 ? -along : along)) + 0x1p-48 * size +
+                           2 * sqrt_rn(static_cast<double>(tiny));
+    box.lower[k] = min(from, from + along) - reached;
+    box.upper[k] = max(from, from + along) + reached;
   }
   return box;
 }

@@ -106,8 +106,8 @@ class send_plan {
   };
   /// The items that are sent to a rank in one of so many rounds: about the same number in each.
   part of(std::size_t rank, std::uint64_t round, std::uint64_t rounds) const {
-    std::uint64_t const all = count(rank), most = (all + rounds - 1) / rounds, begin = std::min(all, round * most);
-    return {list_.data() + ends_[rank] + begin, static_cast<std::size_t>(std::min(all, begin + most) - begin)};
+    std::uint64_t const all = count(rank), share = (all + rounds - 1) / rounds, begin = std::min(all, round * share);
+    return {list_.data() + ends_[rank] + begin, static_cast<std::size_t>(std::min(all, begin + share) - begin)};
   }
 
  private:

@@ -27,7 +27,7 @@ class halo_filter {
   halo_filter(rank_lookup const& map, double extent, S radius) : rows_{map.others} {
     for (int level = coarse_grid::finest; level >= 0; --level) {
       if (!set(map, extent, level)) return;
-      if (to_bits(2 * radius) < most_) return;
+      if (to_bits(2 * radius) < limit_) return;
     }
   }
 
@@ -38,7 +38,7 @@ class halo_filter {
     std::uint32_t rows[N], columns[N], inside[N], wide[N];
     for (unsigned k = 0; k < N; ++k) {
       S const r = b.radius[k], x = place(0, b.x[k], r), y = place(1, b.y[k], r), z = place(2, b.z[k], r);
-      wide[k] = to_bits(2 * r) < most_ ? 0u : 1u;
+      wide[k] = to_bits(2 * r) < limit_ ? 0u : 1u;
       inside[k] = is_inside(x) & is_inside(y) & is_inside(z);
       bool const so = inside[k] != 0;
       columns[k] = cell(select(so, x, S(0)));
@@ -56,17 +56,17 @@ class halo_filter {
     auto const& bounds = map.grid.bounds();
     double const u = static_cast<double>(ieee_traits<S>::unit_roundoff), across = 1 << level;
     double const tiny = static_cast<double>(limits::min()), huge = static_cast<double>(limits::max());
-    double most = extent;
+    double limit = extent;
     for (int k = 0; k < 3; ++k) {
       double const size = max(max(-bounds.lower[k], bounds.lower[k]), max(-bounds.upper[k], bounds.upper[k]));
       double const cells = map.grid.cells_on(k, level), width = cells > 0 ? 1 / cells : extent / across;
       if (!(size < huge / 8 && 1 / width < huge)) return false;
-      double const room = 0x1p-12 * width + 0x1p-19 * extent + (8 * u + 0x1p-46) * size + 4 * sqrt_rn(tiny);
-      lower_[k] = static_cast<S>(bounds.lower[k] + room - width);
+      double const margin = 0x1p-12 * width + 0x1p-19 * extent + (8 * u + 0x1p-46) * size + 4 * sqrt_rn(tiny);
+      lower_[k] = static_cast<S>(bounds.lower[k] + margin - width);
       scale_[k] = static_cast<S>(1 / width);
-      most = min(most, width - 2 * room);
+      limit = min(limit, width - 2 * margin);
     }
-    most_ = most > 0 ? to_bits(static_cast<S>(most)) : 0;
+    limit_ = limit > 0 ? to_bits(static_cast<S>(limit)) : 0;
     end_ = to_bits(static_cast<S>(across + 1));
     across_ = 1u << level;
     rows_ = map.others + rank_lookup::first_row_of(level);
@@ -85,8 +85,8 @@ class halo_filter {
   }
 
   S lower_[3] = {}, scale_[3] = {};
-  uint_for<S> most_ = 0;  ///< how wide a box is at most, as bits, which are in the order of the numbers from 0 on
-  uint_for<S> end_ = 0;   ///< where the last cell ends, as bits
+  uint_for<S> limit_ = 0;  ///< how wide a box is at most, as bits, which are in the order of the numbers from 0 on
+  uint_for<S> end_ = 0;    ///< where the last cell ends, as bits
   std::uint32_t across_ = 0;
   std::uint32_t const* rows_;  ///< there are some, also where all pass
 };
@@ -152,9 +152,9 @@ class sphere_send_plan : public send_plan {
   template <class Ranks>
   std::uint64_t rounds(Ranks const& ranks, std::size_t chunk) const {
     std::uint64_t const mine = (size() + chunk - 1) / chunk;
-    std::uint64_t most = 0;
-    ranks.reduce(&mine, &most, 1, reduction::max);
-    return most;
+    std::uint64_t limit = 0;
+    ranks.reduce(&mine, &limit, 1, reduction::max);
+    return limit;
   }
 };
 

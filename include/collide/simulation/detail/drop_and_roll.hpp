@@ -45,7 +45,7 @@ class dropped_spheres {
   bool drop(double x, double y, double radius, vector& at) {
     radius_ = radius;
     at_ = {x, y, upper_.z() + 4 * largest_};
-    held_ = 0;
+    support_count_ = 0;
     left_ = {};
     gathered_at_ = vector(0, 0, 1e300);
     for (int step = 0; step < 200; ++step) {
@@ -65,9 +65,9 @@ class dropped_spheres {
   }
   /// The number of columns of cells, and the place of one.
   std::size_t columns() const { return columns_.size(); }
-  double column_side(std::size_t column, int k, double part) const {
+  double column_side(std::size_t column, int k, double fraction) const {
     std::size_t const n = std::size_t(count_[0]), number = k == 0 ? column % n : column / n;
-    return lower_[k] + (upper_[k] - lower_[k]) * (static_cast<double>(number) + part) / count_[k];
+    return lower_[k] + (upper_[k] - lower_[k]) * (static_cast<double>(number) + fraction) / count_[k];
   }
 
  private:
@@ -93,7 +93,7 @@ class dropped_spheres {
   }
   std::size_t place(int i, int k) const { return std::size_t(k) * std::size_t(count_[0]) + std::size_t(i); }
   double reach(ball const& b) const { return b.radius + radius_; }
-  vector normal(int i) const { return (at_ - holds_[i].centre) / reach(holds_[i]); }
+  vector normal(int i) const { return (at_ - supports_[i].centre) / reach(supports_[i]); }
 
   /// f(ball) for balls of the columns within a distance from a place, from the top down, until it says false.
   template <class F>
@@ -112,16 +112,16 @@ class dropped_spheres {
     gathered_at_ = at_;
     near_ = walls_;
     for_each_near(at_, range + radius_ + largest_, [&](ball const& b) {
-      double const most = range + reach(b);
-      if ((b.centre - at_).squaredNorm() < most * most) near_.push_back(b);
+      double const reached = range + reach(b);
+      if ((b.centre - at_).squaredNorm() < reached * reached) near_.push_back(b);
       return b.centre.z() > at_.z() - range - radius_ - largest_;
     });
   }
   bool overlaps() {
     gather();
     return std::any_of(near_.begin(), near_.end(), [&](ball const& b) {
-      double const least = reach(b) * (1 - 1e-9) - 1e-9 * radius_;
-      return b.radius <= largest_ && (b.centre - at_).squaredNorm() < least * least;
+      double const lowest = reach(b) * (1 - 1e-9) - 1e-9 * radius_;
+      return b.radius <= largest_ && (b.centre - at_).squaredNorm() < lowest * lowest;
     });
   }
 
@@ -130,27 +130,27 @@ class dropped_spheres {
     if (at_.z() <= lower_.z() + radius_ * (1 + 1e-12)) return false;
     vector n[3];
     bool falls = true;
-    for (int i = 0; i < held_; ++i) {
+    for (int i = 0; i < support_count_; ++i) {
       n[i] = normal(i);
       falls = falls && n[i].z() <= 1e-12;
     }
     if (falls) return fall();
-    for (int i = 0; i < held_; ++i) {
+    for (int i = 0; i < support_count_; ++i) {
       vector down = n[i] * n[i].z() - vector(0, 0, 1);
       if (n[i].z() <= 0 || !leads_away(down, n, i, i)) continue;
       if (down.squaredNorm() < 1e-20) down = vector(1, 0, 0) - n[i] * n[i].x();  // from the very top anywhere
-      ball const on = holds_[i];
+      ball const on = supports_[i];
       return follow({on.centre, reach(on), n[i], down.normalized()}, i, i);
     }
-    for (int i = 0; i < held_; ++i)
-      for (int k = i + 1; k < held_; ++k) {
+    for (int i = 0; i < support_count_; ++i)
+      for (int k = i + 1; k < support_count_; ++k) {
         vector along = cross(n[i], n[k]);
         if (along.squaredNorm() < 1e-20) continue;
         along = along.normalized();
         if (along.z() > 0) along = -along;
         if (along.z() > -1e-9 || !leads_away(along, n, i, k)) continue;
-        vector const axis = (holds_[k].centre - holds_[i].centre).normalized();
-        vector const middle = holds_[i].centre + axis * (at_ - holds_[i].centre).dot(axis), arm = at_ - middle;
+        vector const axis = (supports_[k].centre - supports_[i].centre).normalized();
+        vector const middle = supports_[i].centre + axis * (at_ - supports_[i].centre).dot(axis), arm = at_ - middle;
         vector const first = arm.normalized();
         vector second = cross(axis, first);
         if (second.z() > 0) second = -second;
@@ -158,9 +158,9 @@ class dropped_spheres {
       }
     return false;
   }
-  bool leads_away(vector const& way, vector const* n, int i, int k) const {
-    for (int j = 0; j < held_; ++j)
-      if (j != i && j != k && way.dot(n[j]) < -1e-12) return false;
+  bool leads_away(vector const& direction, vector const* n, int i, int k) const {
+    for (int j = 0; j < support_count_; ++j)
+      if (j != i && j != k && direction.dot(n[j]) < -1e-12) return false;
     return true;
   }
 
@@ -183,8 +183,8 @@ class dropped_spheres {
       return b.centre.z() + largest_ + radius_ > best;
     });
     at_.z() = std::min(best, at_.z());
-    held_ = 0;
-    if (hits) holds_[held_++] = found;
+    support_count_ = 0;
+    if (hits) supports_[support_count_++] = found;
     return hits;
   }
 
@@ -192,9 +192,9 @@ class dropped_spheres {
   bool follow(arc const& path, int i, int k) {
     gather();
     double const farthest = 0.8 * radius_;
-    double const least = 1 - farthest * farthest / (2 * path.radius * path.radius);
-    event next{least, 0};
-    if (least <= -1) next = {-1, 0};
+    double const lowest = 1 - farthest * farthest / (2 * path.radius * path.radius);
+    event next{lowest, 0};
+    if (lowest <= -1) next = {-1, 0};
     next.sine = std::sqrt(std::max(0.0, 1 - next.cosine * next.cosine));
     if (i == k) {
       double const nz = path.first.z(), level = std::sqrt(std::max(0.0, 1 - nz * nz));  // the equator
@@ -208,8 +208,8 @@ class dropped_spheres {
       if (e.cosine > next.cosine) next = e;
     });
     for (ball const& b : near_) {
-      if (same(b, holds_[i]) || same(b, holds_[k])) continue;
-      bool const touches = is_held(b) || same(b, left_);  // and is being left
+      if (same(b, supports_[i]) || same(b, supports_[k])) continue;
+      bool const touches = is_support(b) || same(b, left_);  // and is being left
       vector const q = b.centre - path.centre;
       double const x = path.first.dot(q), y = path.second.dot(q), square = x * x + y * y;
       double const at = (path.radius * path.radius + q.squaredNorm() - reach(b) * reach(b)) / (2 * path.radius);
@@ -224,16 +224,16 @@ class dropped_spheres {
       if (e.cosine > next.cosine) next = e;
     }
     at_ = path.at(next.cosine, next.sine);
-    ball const one = holds_[i], other = holds_[k];
-    left_ = next.left < 0 ? ball{} : holds_[next.left];
-    held_ = 0;
-    if (next.left != i) holds_[held_++] = one;
-    if (k != i && next.left != k) holds_[held_++] = other;
-    if (next.hit != nullptr) holds_[held_++] = *next.hit;
+    ball const one = supports_[i], other = supports_[k];
+    left_ = next.left < 0 ? ball{} : supports_[next.left];
+    support_count_ = 0;
+    if (next.left != i) supports_[support_count_++] = one;
+    if (k != i && next.left != k) supports_[support_count_++] = other;
+    if (next.hit != nullptr) supports_[support_count_++] = *next.hit;
     return !next.at_floor;
   }
-  bool is_held(ball const& b) const {
-    return std::any_of(holds_, holds_ + held_, [&](ball const& h) { return same(b, h); });
+  bool is_support(ball const& b) const {
+    return std::any_of(supports_, supports_ + support_count_, [&](ball const& h) { return same(b, h); });
   }
   static bool same(ball const& a, ball const& b) { return a.centre == b.centre; }
 
@@ -248,10 +248,10 @@ class dropped_spheres {
   }
   /// Sphere i holds it no more where it would roll down sphere k alone away from that.
   void consider_leaving(arc const& path, int i, int k, event& next) const {
-    double const ri = reach(holds_[i]), rk = reach(holds_[k]), g = normal(i).dot(normal(k));
+    double const ri = reach(supports_[i]), rk = reach(supports_[k]), g = normal(i).dot(normal(k));
     double const slope = 1 / ri - g / rk;
     if (slope <= 0) return;
-    double const zi = path.centre.z() - holds_[i].centre.z(), zk = path.centre.z() - holds_[k].centre.z();
+    double const zi = path.centre.z() - supports_[i].centre.z(), zk = path.centre.z() - supports_[k].centre.z();
     consider_height(path, (g * zk / rk - zi / ri) / slope, [&](event e) {
       e.left = i;
       if (e.cosine > next.cosine) next = e;
@@ -265,8 +265,8 @@ class dropped_spheres {
   std::vector<ball> walls_, near_;
   double radius_ = 0;  ///< of the one that moves
   vector at_, gathered_at_;
-  ball holds_[3], left_{};  ///< those that hold it, and the one that it has just left
-  int held_ = 0;
+  ball supports_[3], left_{};  ///< those that hold it, and the one that it has just left
+  int support_count_ = 0;
 };
 
 }  // namespace collide::detail

@@ -55,16 +55,16 @@ vec3<S> apart(repeating_box<S> const& space, vec3<S> a, vec3<S> b) {
 template <class S, class Space, class F>
 void for_each_overlap(std::vector<S> const& xyz, std::vector<S> const& radii, Space const& space, F const& f) {
   S const largest = radii.empty() ? S(0) : *std::max_element(radii.begin(), radii.end());
-  double const most = static_cast<double>(largest);
+  double const largest_radius = static_cast<double>(largest);
   std::vector<swept_point> points;
   for (std::size_t i = 0; i < radii.size(); ++i)
-    add_to_sweep(space, i, vec3<S>(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]), 2 * most, points);
+    add_to_sweep(space, i, vec3<S>(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]), 2 * largest_radius, points);
   std::sort(points.begin(), points.end(), [](auto const& a, auto const& b) { return a.centre.x() < b.centre.x(); });
   for (auto a = points.begin(); a != points.end(); ++a) {
     double const radius = static_cast<double>(radii[a->number]);
     for (auto b = a + 1; b != points.end(); ++b) {
       vec3<double> const between = b->centre - a->centre;
-      if (between.x() > radius + most) break;
+      if (between.x() > radius + largest_radius) break;
       if (a->is_image && b->is_image) continue;
       double const overlap = radius + static_cast<double>(radii[b->number]) - between.norm();
       if (overlap > 0) f(*a, *b, overlap);

@@ -44,7 +44,7 @@ class array_per_sphere : public array_in_space<T> {
 
   /// The entries of a query of so many spheres, not yet written.
   template <class Space>
-  T* room_for(Space const& space, std::size_t spheres) {
+  T* memory_for(Space const& space, std::size_t spheres) {
     this->size_ = spheres * row_;
     this->data_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), this->size_);
     this->download_ = host_copier<T>(space);

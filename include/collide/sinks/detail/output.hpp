@@ -175,11 +175,11 @@ class pair_collector {
       // what is never written is not there, on a host
       if (Space::host_accessible && expected < spheres) expected = spheres;
     }
-    pair* const to = take_room(space, spheres, expected);
+    pair* const to = reserve_own(space, spheres, expected);
     fill(space, query, to, own_.capacity());
     if (total_ > own_.capacity()) {
-      std::size_t const room = total_ + total_ / 4;  // so that a few more next time fit too
-      fill(space, query, own_.reserve(space.resource(), room), room);
+      std::size_t const reserved = total_ + total_ / 4;  // so that a few more next time fit too
+      fill(space, query, own_.reserve(space.resource(), reserved), reserved);
     }
   }
 
@@ -187,15 +187,15 @@ class pair_collector {
   template <class Space, class Query>
   void sort(Space& space, Query const& query) {
     // room as for the whole array, so that a few pairs more than last time are no reason to allocate
-    std::size_t const room = data_ == own_.data() ? own_.capacity() : size_;
-    sort_pairs(space, data_, size_, room, query.spheres.size(), query.mesh.size(), sort_memory_);
+    std::size_t const reserved = data_ == own_.data() ? own_.capacity() : size_;
+    sort_pairs(space, data_, size_, reserved, query.spheres.size(), query.mesh.size(), sort_memory_);
   }
 
   /// Makes room for the pairs of a query in the array of its own.
   template <class Space>
   void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
     total_of_.reserve(space);
-    take_room(space, spheres, pairs);
+    reserve_own(space, spheres, pairs);
   }
   /// Takes what `fill` into the caller's array needs.
   template <class Space>
@@ -217,7 +217,7 @@ class pair_collector {
  private:
   /// Its own array, with room for `pairs`, and as many as one may expect of so many spheres.
   template <class Space>
-  pair* take_room(Space const& space, std::size_t spheres, std::size_t pairs) {
+  pair* reserve_own(Space const& space, std::size_t spheres, std::size_t pairs) {
     std::size_t const guess = spheres / 8 + 1024;
     return own_.reserve(space.resource(), std::max({own_.capacity(), guess, pairs}));
   }

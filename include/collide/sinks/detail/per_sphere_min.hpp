@@ -97,8 +97,8 @@ class per_sphere_min : public array_in_space<Record> {
     space.fill(to, 0xff, size_ * sizeof *to);
     space.for_each(size_, reset_best<Entry, Key>{to});
     std::size_t const pairs = collected_.size();
-    std::size_t const room = numbers_.capacity();
-    numbers_.reserve(space.resource(), pairs > room ? pairs + pairs / 4 : room);
+    std::size_t const reserved = numbers_.capacity();
+    numbers_.reserve(space.resource(), pairs > reserved ? pairs + pairs / 4 : reserved);
     pair const* const from = collected_.data();
     space.for_each(pairs, reduce{from, numbers_.data(), to, query.mesh, query.spheres});
     space.for_each(pairs, find_best<S, Entry, Key>{from, numbers_.data(), to});

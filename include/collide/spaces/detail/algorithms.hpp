@@ -91,13 +91,14 @@ void for_each_block(Space const& space, std::size_t n, F const& f) {
 template <class Space, class U>
 void exclusive_scan(Space const& space, U* values, std::size_t n) {
   static_assert(Space::host_accessible, "collide: sums are made on the host");
-  constexpr std::size_t most = 64, least = 1 << 14;  // parts, and values in a part
-  std::size_t const parts = std::min({n / least + 1, space.saturating_blocks(), most}), share = (n + parts - 1) / parts;
+  constexpr std::size_t max_count = 64, min_count = 1 << 14;  // parts, and values in a part
+  std::size_t const parts = std::min({n / min_count + 1, space.saturating_blocks(), max_count}),
+                    share = (n + parts - 1) / parts;
   if (parts == 1) {
     std::exclusive_scan(values, values + n, values, U{0});
     return;
   }
-  U sums[most];
+  U sums[max_count];
   auto const begin = [&](std::size_t part) { return values + std::min(part * share, n); };
   for_each_block(space, parts, [&](std::size_t p) { sums[p] = std::accumulate(begin(p), begin(p + 1), U{0}); });
   std::exclusive_scan(sums, sums + parts, sums, U{0});

@@ -24,7 +24,7 @@ std::pmr::memory_resource* host_memory_of(Space const&) {
 
 /// Makes room for `n` values: for a quarter more if it must grow, since it may have to again. The old ones are lost.
 template <class T>
-T* make_room(buffer<T>& memory, std::pmr::memory_resource* resource, std::size_t n) {
+T* ensure_capacity(buffer<T>& memory, std::pmr::memory_resource* resource, std::size_t n) {
   return memory.reserve(resource, n <= memory.capacity() ? n : n + n / 4);
 }
 
@@ -35,7 +35,7 @@ class host_array {
   /// Sets the size; the values are unspecified.
   template <class Space>
   void resize(Space const& space, std::size_t n) {
-    make_room(memory_, host_memory_of(space), n);
+    ensure_capacity(memory_, host_memory_of(space), n);
     size_ = n;
   }
 

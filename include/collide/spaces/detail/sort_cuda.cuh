@@ -80,8 +80,8 @@ inline void sort_pairs_on_device(cudaStream_t stream, std::pmr::memory_resource*
   if (capacity > merge_sort_limit && other.capacity() < capacity) {
     reserve_sort_on_device(stream, resource, capacity, other, scratch);
   }
-  std::size_t const most = capacity < merge_sort_limit ? capacity : merge_sort_limit;
-  std::size_t merge_bytes = uses_radix ? 0 : merge_sort_bytes(stream, most),
+  std::size_t const limit = capacity < merge_sort_limit ? capacity : merge_sort_limit;
+  std::size_t merge_bytes = uses_radix ? 0 : merge_sort_bytes(stream, limit),
               radix_bytes = uses_radix ? radix_sort_bytes(stream, capacity) : 0;
   void* const temporary = scratch.reserve(resource, uses_radix ? radix_bytes : merge_bytes);
   auto* const sorted = reinterpret_cast<std::uint64_t*>(other.data());

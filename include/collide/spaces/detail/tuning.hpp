@@ -53,7 +53,7 @@ struct bvh_tuning {
   static constexpr bool divides_by_area = Space::host_accessible;
   /// How many points are sorted before they search a tree that was not divided by area, so that neighbours search the
   /// same nodes.
-  static constexpr std::size_t least_sorted_points = Space::host_accessible ? ~std::size_t{0} : std::size_t{1} << 18;
+  static constexpr std::size_t min_sorted_points = Space::host_accessible ? ~std::size_t{0} : std::size_t{1} << 18;
 };
 
 namespace detail {

@@ -86,8 +86,8 @@ struct place_spheres {
 
   template <class Block>
   struct scratch {
-    static constexpr std::size_t room = 16 * Block::items;
-    binned_sphere<S> found[room];
+    static constexpr std::size_t capacity = 16 * Block::items;
+    binned_sphere<S> found[capacity];
     std::size_t count;
   };
 
@@ -114,9 +114,9 @@ struct place_spheres {
         s.count += wanted;
       };
       // where all radii are equal, one comparison stands for all
-      auto const of_radii = [&](auto const& holds) {
-        if (!one_radius) return mask_of<n>([&](unsigned k) { return holds(batch.radius[k]); });
-        return holds(spheres.common_radius()) ? first_bits(spheres.size() - first) : 0;
+      auto const of_radii = [&](auto const& test) {
+        if (!one_radius) return mask_of<n>([&](unsigned k) { return test(batch.radius[k]); });
+        return test(spheres.common_radius()) ? first_bits(spheres.size() - first) : 0;
       };
       std::uint64_t open = of_radii([](S r) { return is_valid_radius(r); });
       for (int g = grid_count - 1; g >= 0 && open != 0; --g) {  // by rising reach: a sphere ends up in the tightest
@@ -126,7 +126,7 @@ struct place_spheres {
             served & mask_of<n>([&](unsigned k) { return box.contains(batch.x[k], batch.y[k], batch.z[k]); });
         open &= ~served;
         for (int l = 0; l < box.levels && inside != 0; ++l) {
-          make_room(s);
+          ensure_capacity(s);
           for (std::uint64_t rest = inside; rest != 0; rest &= rest - 1) {
             int const k = __builtin_ctzll(rest);
             std::uint32_t const cell = box.cell_at(box.level[l], {batch.x[k], batch.y[k], batch.z[k]}).number;
@@ -134,7 +134,7 @@ struct place_spheres {
           }
         }
       }
-      make_room(s);
+      ensure_capacity(s);
       for (; open != 0; open &= open - 1) list(__builtin_ctzll(open), everywhere, true);
     }
     flush(s);
@@ -142,16 +142,16 @@ struct place_spheres {
 
   static std::uint64_t first_bits(std::size_t n) { return n < 64 ? (std::uint64_t{1} << n) - 1 : ~std::uint64_t{0}; }
 
-  template <unsigned n, class Holds>
-  static std::uint64_t mask_of(Holds const& holds) {
+  template <unsigned n, class Test>
+  static std::uint64_t mask_of(Test const& test) {
     unsigned char flags[n];
-    for (unsigned k = 0; k < n; ++k) flags[k] = static_cast<unsigned char>(holds(k));
+    for (unsigned k = 0; k < n; ++k) flags[k] = static_cast<unsigned char>(test(k));
     return bits_of_flags<n>(flags);
   }
 
   template <class Scratch>
-  void make_room(Scratch& s) const {
-    if (s.count + 64 >= Scratch::room) flush(s);
+  void ensure_capacity(Scratch& s) const {
+    if (s.count + 64 >= Scratch::capacity) flush(s);
   }
 
   template <class Scratch>
@@ -201,8 +201,8 @@ struct sphere_soa {
     for (std::size_t k = 0; k < simd_width; ++k) {
       S const px = x[first + k], py = y[first + k], pz = z[first + k];
       S const gx = b.axis_distance(0, px), gy = b.axis_distance(1, py), gz = b.axis_distance(2, pz),
-              most = reach[first + k] + b.padding;
-      mask |= gx * gx + (gy * gy + gz * gz) <= most * most ? bit[k] : uint_for<S>(0);
+              reached = reach[first + k] + b.padding;
+      mask |= gx * gx + (gy * gy + gz * gz) <= reached * reached ? bit[k] : uint_for<S>(0);
     }
     return static_cast<std::uint32_t>(mask);
   }

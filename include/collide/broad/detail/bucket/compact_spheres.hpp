@@ -33,9 +33,9 @@ struct compact_spheres {
 
   template <class Block>
   struct scratch {
-    static constexpr std::uint32_t room = 2 * Block::num_threads * Block::items;
-    id active[room];            ///< spheres near triangles
-    std::int8_t grid_of[room];  ///< which grid serves each of them
+    static constexpr std::uint32_t capacity = 2 * Block::num_threads * Block::items;
+    id active[capacity];            ///< spheres near triangles
+    std::int8_t grid_of[capacity];  ///< which grid serves each of them
     counts found;
   };
 
@@ -78,15 +78,15 @@ struct compact_spheres {
   /// How many packs a thread goes through at most before all expand what they have found: where threads work together,
   /// one that finds less than others would else go on alone.
   template <class Block>
-  static constexpr std::uint32_t most_packs = Block::num_threads > 1 ? 12 : std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t max_packs = Block::num_threads > 1 ? 12 : std::numeric_limits<std::uint32_t>::max();
 
   /// Calls f(first) for a thread's packs, from `next` on, as long as there is room; f says how many spheres it has
   /// appended.
   template <class Block, class F>
   COLLIDE_HD_INLINE void each_pack(std::size_t& next, F const& f) const {
-    constexpr std::uint32_t n = Block::items, room = scratch<Block>::room / Block::num_threads;
+    constexpr std::uint32_t n = Block::items, capacity = scratch<Block>::capacity / Block::num_threads;
     std::uint32_t appended = 0;
-    for (std::uint32_t k = 0; k < most_packs<Block> && next < spheres.size() && appended + n <= room; ++k) {
+    for (std::uint32_t k = 0; k < max_packs<Block> && next < spheres.size() && appended + n <= capacity; ++k) {
       appended += f(next);
       next += stride<Block>();
     }

@@ -162,7 +162,7 @@ template <class S>
 class sorted_spheres {
  public:
   /// The most spheres that can be sorted: places have 32 bits, and a sphere may be in a cell of each level.
-  static constexpr std::size_t most = std::size_t{0xffffffffu} / max_levels - sphere_soa<S>::simd_width;
+  static constexpr std::size_t max_size = std::size_t{0xffffffffu} / max_levels - sphere_soa<S>::simd_width;
 
   /// Measures a mesh, whose summary is empty yet, and the boxes around groups of its triangles.
   template <class Space>
@@ -210,20 +210,20 @@ class sorted_spheres {
     auto* const total = total_.reserve(space.resource(), 1);
     constexpr std::size_t share = place::batches * 64;
     std::size_t const blocks = (spheres.size() + share - 1) / share;
-    std::size_t room = placed_.capacity();
-    for (bool placed = false; !placed; room = static_cast<std::size_t>(*total + *total / 4)) {
+    std::size_t capacity = placed_.capacity();
+    for (bool placed = false; !placed; capacity = static_cast<std::size_t>(*total + *total / 4)) {
       place kernel{spheres, grids_, grid_count_, occupied_.data(), everywhere(), nullptr, total, 0};
       space.fill(total, 0, sizeof *total);
-      if (room == 0) {  // of a sample, to begin with
+      if (capacity == 0) {  // of a sample, to begin with
         kernel.stride = blocks / 32 + 1;
         space.launch((blocks - 1) / kernel.stride + 1, kernel);
         *total = *total * kernel.stride + 1024;
         continue;
       }
-      kernel.to = placed_.reserve(space.resource(), room);
-      kernel.capacity = room;
+      kernel.to = placed_.reserve(space.resource(), capacity);
+      kernel.capacity = capacity;
       space.launch(blocks, kernel);
-      placed = *total <= room;
+      placed = *total <= capacity;
     }
     auto const n = static_cast<std::size_t>(*total);
     columns_ = columns(space, placed_.capacity());
@@ -251,11 +251,11 @@ class sorted_spheres {
   /// Makes room for up to so many spheres.
   template <class Space>
   void reserve(Space& space, std::size_t spheres) {
-    std::size_t const room = max(placed_.capacity(), max_levels * spheres);
-    placed_.reserve(space.resource(), room);
-    order_.reserve(space.resource(), room);
+    std::size_t const capacity = max(placed_.capacity(), max_levels * spheres);
+    placed_.reserve(space.resource(), capacity);
+    order_.reserve(space.resource(), capacity);
     total_.reserve(space.resource(), 1);
-    columns_ = columns(space, room);
+    columns_ = columns(space, capacity);
     clear();
   }
 
@@ -300,12 +300,12 @@ class sorted_spheres {
 
   template <class Space>
   sphere_soa<S> columns(Space& space, std::size_t n) {
-    std::size_t const room = n + sphere_soa<S>::simd_width;
-    bool const same = numbers_.capacity() == 5 * room;
-    S* const to = numbers_.reserve(space.resource(), 5 * room);
-    id* const ids = ids_.reserve(space.resource(), room);
-    if (!same) space.fill(to, 0, 5 * room * sizeof *to);  // also what is behind the end is read
-    return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids};
+    std::size_t const capacity = n + sphere_soa<S>::simd_width;
+    bool const same = numbers_.capacity() == 5 * capacity;
+    S* const to = numbers_.reserve(space.resource(), 5 * capacity);
+    id* const ids = ids_.reserve(space.resource(), capacity);
+    if (!same) space.fill(to, 0, 5 * capacity * sizeof *to);  // also what is behind the end is read
+    return {to, to + capacity, to + 2 * capacity, to + 3 * capacity, to + 4 * capacity, ids};
   }
 
   spheres_in_cells<S> in_cells() const {

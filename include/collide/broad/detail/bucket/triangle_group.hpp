@@ -55,10 +55,10 @@ struct triangle_group {
     }
     there = static_cast<std::uint32_t>(mask) & ((1u << n) - 1);
     for (int k = 0; k < 3; ++k) {
-      all.lower[k] = least(lower[k], [](S a, S b) { return min(a, b); });
-      all.upper[k] = least(upper[k], [](S a, S b) { return max(a, b); });
+      all.lower[k] = reduced(lower[k], [](S a, S b) { return min(a, b); });
+      all.upper[k] = reduced(upper[k], [](S a, S b) { return max(a, b); });
     }
-    all.padding = least(padding, [](S a, S b) { return max(a, b); });
+    all.padding = reduced(padding, [](S a, S b) { return max(a, b); });
   }
 
   /// True if there is a triangle `i`, and it is finite.
@@ -80,8 +80,8 @@ struct triangle_group {
   std::uint32_t reached_by(S x, S y, S z, S reach) const {
     uint_for<S> mask = 0;
     for (std::uint32_t i = 0; i < size; ++i) {
-      S const gx = outside(0, i, x), gy = outside(1, i, y), gz = outside(2, i, z), most = reach + padding[i];
-      mask |= gx * gx + (gy * gy + gz * gz) <= most * most ? bit[i] : uint_for<S>(0);
+      S const gx = outside(0, i, x), gy = outside(1, i, y), gz = outside(2, i, z), reached = reach + padding[i];
+      mask |= gx * gx + (gy * gy + gz * gz) <= reached * reached ? bit[i] : uint_for<S>(0);
     }
     return static_cast<std::uint32_t>(mask) & there;
   }
@@ -151,7 +151,7 @@ struct triangle_group {
 
   /// The least of all values, as `f` of two says.
   template <class F>
-  static S least(S const (&values)[size], F const& f) {
+  static S reduced(S const (&values)[size], F const& f) {
     S half[size / 2];
     for (std::size_t i = 0; i < size / 2; ++i) half[i] = f(values[i], values[i + size / 2]);
     return f(f(half[0], half[1]), f(half[2], half[3]));

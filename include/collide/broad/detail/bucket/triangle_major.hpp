@@ -32,8 +32,8 @@ struct query_triangle_major {
 
   template <class Block>
   struct scratch {
-    static constexpr std::uint32_t room = 256;
-    reached found[room];
+    static constexpr std::uint32_t capacity = 256;
+    reached found[capacity];
     std::uint32_t count;
     triangle_group<S> group;
     bool is_loaded;  ///< the group: most groups have no sphere near them, and are not read
@@ -97,7 +97,7 @@ struct query_triangle_major {
           std::uint32_t const here = in.spheres.reaching(around, i) & (0xffu >> (8 - min(last - i, 8u)));
           s.found[s.count] = {i, static_cast<id>(first) + k, here};
           s.count += here != 0;  // no branch: it would often be mispredicted
-          if (s.count == s.room) test(block, s);
+          if (s.count == s.capacity) test(block, s);
         }
       };
       for (int g = 0; g < in.grid_count; ++g) {
@@ -124,7 +124,7 @@ struct query_triangle_major {
               s.group.reached_by(in.spheres.x[k], in.spheres.y[k], in.spheres.z[k], in.spheres.reach[k]);
           s.found[s.count] = {k, static_cast<id>(first), mask};
           s.count += mask != 0;
-          if (s.count == s.room) test_group(block, s);
+          if (s.count == s.capacity) test_group(block, s);
         }
       }
     };
@@ -178,7 +178,7 @@ struct query_triangle_major {
                  [[maybe_unused]] triangle<S> const& t) const {
     pair const p{in.spheres.number[place], in.mesh.number_of(number)};
     if constexpr (in_batches<NarrowPhase, S>) {
-      if (s.batch.size == s.batch.room) s.batch.decide(pipeline, block, s.pipeline);
+      if (s.batch.size == s.batch.capacity) s.batch.decide(pipeline, block, s.pipeline);
       s.batch.add(p, t, sphere_of(place));
     } else {
       pipeline.push(block, s.pipeline, p, sphere_of(place));

@@ -35,14 +35,14 @@ inline std::uint32_t morton_place(std::uint32_t x, std::uint32_t y, std::uint32_
 /// Some of the groups of a mesh: whether their triangles are close to each other, and the box around them.
 template <class S>
 struct sampled_groups {
-  static constexpr std::size_t most = 64;
+  static constexpr std::size_t max_count = 64;
 
   aabb<S> all = aabb<S>::empty();
   std::size_t groups = 0, wide = 0;
 
   explicit sampled_groups(mesh_view<S> const& mesh) {
     std::size_t const count = triangle_group<S>::count(mesh.size());
-    std::size_t const samples = min(most, (count + 15) / 16);
+    std::size_t const samples = min(max_count, (count + 15) / 16);
     for (; groups < samples; ++groups) {
       triangle_group<S> group;
       multiversioned([&] { group.load(mesh, count * groups / samples * triangle_group<S>::size); });
@@ -110,9 +110,10 @@ struct place_on_morton_curve {
 /// are. O(n).
 template <class Space>
 void sort_by_digit(Space& space, triangle_on_curve const* from, triangle_on_curve* to, std::size_t n, int shift) {
-  constexpr std::size_t digits = 1 << 10, most = 16, least = 1 << 14;  // parts, and triangles in a part
-  std::size_t const parts = std::min({n / least + 1, space.saturating_blocks(), most}), share = (n + parts - 1) / parts;
-  std::uint32_t begins[most][digits] = {};
+  constexpr std::size_t digits = 1 << 10, max_count = 16, min_count = 1 << 14;  // parts, and triangles in a part
+  std::size_t const parts = std::min({n / min_count + 1, space.saturating_blocks(), max_count}),
+                    share = (n + parts - 1) / parts;
+  std::uint32_t begins[max_count][digits] = {};
   auto const digit = [&](std::size_t i) { return from[i].place >> shift & (digits - 1); };
   auto const each_of = [&](std::size_t part, auto const& f) {
     for (std::size_t i = part * share; i < std::min((part + 1) * share, n); ++i) f(i);

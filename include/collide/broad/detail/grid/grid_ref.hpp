@@ -78,12 +78,13 @@ struct bucket_ref : mesh_lookup<S> {
   }
 
   template <class Sphere>
-  COLLIDE_HD bool next(Sphere const& shape, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+  COLLIDE_HD bool next(Sphere const& shape, candidate_cursor& c, std::uint32_t max_count,
+                       candidate_range& range) const {
     if (c.grid == no_candidates) return false;
-    if (c.grid == no_grid) return this->next_of_all(c, most, range);
+    if (c.grid == no_grid) return this->next_of_all(c, max_count, range);
     grid<S> const& g = grids[c.grid];
     for (; c.level < g.levels; ++c.level, c.step = 0) {
-      if (!next_of_level(g, g.level[c.level], shape, c, most, range)) continue;
+      if (!next_of_level(g, g.level[c.level], shape, c, max_count, range)) continue;
       if (c.level + 1 == g.levels && was_last(shape, c)) c.grid = no_candidates;
       return true;
     }
@@ -171,10 +172,10 @@ struct bucket_ref : mesh_lookup<S> {
   }
 
   /// The entries of a cell that have not been gone through; then the cursor is at the next step.
-  COLLIDE_HD bool next_of_cell(std::uint32_t cell, std::uint32_t place, candidate_cursor& c, std::uint32_t most,
+  COLLIDE_HD bool next_of_cell(std::uint32_t cell, std::uint32_t place, candidate_cursor& c, std::uint32_t max_count,
                                candidate_range& range) const {
     item_range const list = lists[cell];
-    std::uint32_t const left = list.count - c.skip, some = min(left, most);
+    std::uint32_t const left = list.count - c.skip, some = min(left, max_count);
     if (left != 0) range = {entries + (list.end - left), 0, some, place};
     c.skip += some;
     if (some == left) {
@@ -189,14 +190,14 @@ struct bucket_ref : mesh_lookup<S> {
   static COLLIDE_HD_INLINE bool was_last(moving_sphere<S> const&, candidate_cursor const&) { return false; }
 
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& shape, candidate_cursor& c,
-                                std::uint32_t most, candidate_range& range) const {
+                                std::uint32_t max_count, candidate_range& range) const {
     if (c.step != 0) return false;
     cell_ref const at = g.cell_at(l, shape.centre);
-    return next_of_cell(at.number, at.coverage, c, most, range);
+    return next_of_cell(at.number, at.coverage, c, max_count, range);
   }
 
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& shape,
-                                candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+                                candidate_cursor& c, std::uint32_t max_count, candidate_range& range) const {
     swept_cells<S> const path(g, l, shape.centre, shape.displacement);
     while (c.step < path.steps()) {
       auto const here = path.at(c.step);
@@ -206,7 +207,7 @@ struct bucket_ref : mesh_lookup<S> {
         c.skip = 0;
         continue;
       }
-      if (next_of_cell(cell, here.coverage, c, most, range)) return true;
+      if (next_of_cell(cell, here.coverage, c, max_count, range)) return true;
     }
     return false;
   }

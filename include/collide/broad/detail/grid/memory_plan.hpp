@@ -17,19 +17,19 @@ namespace collide::detail {
 inline std::size_t table_size(std::size_t cells) { return cells + 1 + cells / 64; }
 
 /// Entries are numbered with 32 bits, and a triangle that is small against the cells is in at most eight.
-inline constexpr std::size_t most_entries = std::numeric_limits<std::uint32_t>::max();
-inline constexpr std::size_t most_triangles_of_grid = most_entries / 8;
+inline constexpr std::size_t max_entries = std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::size_t max_triangles_of_grid = max_entries / 8;
 
-/// True if a build has at most `most` triangles, and no more than a grid can have.
-inline bool fits_grid(std::size_t triangles, std::size_t most) {
-  return triangles <= std::min(most, most_triangles_of_grid);
+/// True if a build has at most `limit` triangles, and no more than a grid can have.
+inline bool fits_grid(std::size_t triangles, std::size_t limit) {
+  return triangles <= std::min(limit, max_triangles_of_grid);
 }
 
 /// Throws `error` if it has more.
-inline void check_triangles(std::size_t triangles, std::size_t most) {
-  if (fits_grid(triangles, most)) return;
+inline void check_triangles(std::size_t triangles, std::size_t limit) {
+  if (fits_grid(triangles, limit)) return;
   throw error("collide: bucket: " + std::to_string(triangles) + " triangles are more than " +
-              std::to_string(std::min(most, most_triangles_of_grid)) +
+              std::to_string(std::min(limit, max_triangles_of_grid)) +
               ", the most of one build: build fewer at a time, with in_passes or on more ranks");
 }
 
@@ -46,25 +46,25 @@ struct memory_plan {
   static memory_plan make(std::size_t triangles, std::size_t spheres, int wanted, bool width_is_given,
                           std::size_t fixed, std::size_t budget, bool serves_steps = false,
                           std::size_t cells_of_few = 0) {
-    std::uint32_t most_bits = 12;
+    std::uint32_t max_bits = 12;
     std::size_t const cells = std::max({serves_steps ? triangles : std::min(triangles, spheres),
                                         std::min(4 * triangles, std::size_t{1} << 18),
                                         std::min(spheres / 16, std::max(16 * triangles, cells_of_few))});
-    while (most_bits < 28 && (std::size_t{1} << most_bits) < cells) ++most_bits;
+    while (max_bits < 28 && (std::size_t{1} << max_bits) < cells) ++max_bits;
     for (int g = wanted; g > 0; --g) {
       auto const grids = static_cast<std::size_t>(g);
-      std::size_t const least = 8 * triangles * grids;
-      if (least > most_entries) continue;
+      std::size_t const min_entries = 8 * triangles * grids;
+      if (min_entries > max_entries) continue;
       // the few spheres that use many triangles have, in the end, many pairs; the entries of several grids are counted
       // before there is memory for them
       std::size_t const chosen = (spheres < triangles ? 48 : 16) * triangles + spheres / (wanted > 1 ? 2 : 4) + 4096,
                         given = 1024 * triangles + (std::size_t{1} << 21);
-      std::size_t const most = std::min((width_is_given ? given : chosen) * grids, most_entries);
-      for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
+      std::size_t const limit = std::min((width_is_given ? given : chosen) * grids, max_entries);
+      for (std::uint32_t bits = max_bits; bits >= 6; --bits) {
         std::size_t const base = fixed + table_size(grids << bits) * sizeof(item_range);
-        if (budget == 0) return {g, bits, most};
-        if (base + least * sizeof(cell_item) > budget) continue;
-        return {g, bits, std::min(most, (budget - base) / sizeof(cell_item))};
+        if (budget == 0) return {g, bits, limit};
+        if (base + min_entries * sizeof(cell_item) > budget) continue;
+        return {g, bits, std::min(limit, (budget - base) / sizeof(cell_item))};
       }
     }
     return {};

@@ -31,10 +31,10 @@ struct mesh_statistics {
 
   /// The largest coordinate, without its sign; 0 of no triangles.
   COLLIDE_HD S largest_coordinate() const {
-    S most = 0;
-    if (extents.empty()) return most;
-    for (int k = 0; k < 3; ++k) most = max(most, max(-lower_of(k), upper_of(k)));
-    return most;
+    S largest = 0;
+    if (extents.empty()) return largest;
+    for (int k = 0; k < 3; ++k) largest = max(largest, max(-lower_of(k), upper_of(k)));
+    return largest;
   }
 
   COLLIDE_HD S lower_of(int k) const { return from_ordered_bits<S>(static_cast<uint_for<S>>(~lower[k])); }

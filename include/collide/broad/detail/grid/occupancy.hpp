@@ -97,13 +97,14 @@ struct occupancy_view {
   };
 
   COLLIDE_HD_INLINE cells_on_axis cells_on(int axis, S from, S along) const {
-    S const to = from + along, slack = swept_cells<S>::rounding_slack(from, along), most = from_bits<S>(extent[axis]);
-    S const least = min(from, to) - slack - lower[axis], last = max(from, to) + slack - lower[axis];
-    std::uint32_t const begin = level.coordinate_inside(min(least, most)),
-                        end = level.coordinate_inside(min(last, most));
+    S const to = from + along, slack = swept_cells<S>::rounding_slack(from, along),
+            highest = from_bits<S>(extent[axis]);
+    S const first = min(from, to) - slack - lower[axis], last = max(from, to) + slack - lower[axis];
+    std::uint32_t const begin = level.coordinate_inside(min(first, highest)),
+                        end = level.coordinate_inside(min(last, highest));
     std::uint32_t const stride = axis == 0 ? 1 : level.stride[axis - 1];
-    return {(least <= most ? 1u : 0u) & (last >= 0 ? 1u : 0u), (begin & level.mask[axis]) * stride,
-            (end & level.mask[axis]) * stride, end - begin, last - least};
+    return {(first <= highest ? 1u : 0u) & (last >= 0 ? 1u : 0u), (begin & level.mask[axis]) * stride,
+            (end & level.mask[axis]) * stride, end - begin, last - first};
   }
 
   /// In the lowest bit, whether the cell has triangles.

@@ -30,9 +30,9 @@ COLLIDE_HD_INLINE S path_of(sphere<S> const&) {
 }
 template <class S>
 COLLIDE_HD_INLINE S path_of(moving_sphere<S> const& s) {
-  S most = 0;
-  for (int k = 0; k < 3; ++k) most = max(most, max(s.displacement[k], -s.displacement[k]));
-  return most;
+  S largest = 0;
+  for (int k = 0; k < 3; ++k) largest = max(largest, max(s.displacement[k], -s.displacement[k]));
+  return largest;
 }
 
 /// The space near the longest edge of a triangle that is long and thin and lies across the axes: it fills no more of

@@ -53,8 +53,8 @@ struct level_cost {
   float reach;
   float path;  ///< how far a sphere moves
   share_of_pairs const& share;
-  float sides[3];    ///< of the grid
-  float most_cells;  ///< of two levels; where there are more they wrap
+  float sides[3];   ///< of the grid
+  float max_cells;  ///< of two levels; where there are more they wrap
 
   COLLIDE_HD_INLINE float operator()(triangle_sums const& t, float width) const {
     float const pairs = spheres * t.count * share(reach + 0.5f * width, t.mean_extent()), cells = path / width;
@@ -70,7 +70,7 @@ struct level_cost {
     float cells = 1;
     for (float const side : sides) cells *= side / width + 1;
     float const box = (t.widest + 2 * reach) / width;
-    return share.full() > 0.5f || cells <= most_cells || box * box * box < most_cells;
+    return share.full() > 0.5f || cells <= max_cells || box * box * box < max_cells;
   }
 };
 
@@ -233,7 +233,7 @@ struct plan_grid {
   COLLIDE_HD_INLINE void measure_distances(Block& block, Scratch& s) const {
     std::size_t const i = block.index();
     S const reach = request.reaches[i],
-            least = i + 1 < static_cast<std::size_t>(request.count) ? request.reaches[i + 1] : S(-1);
+            above = i + 1 < static_cast<std::size_t>(request.count) ? request.reaches[i + 1] : S(-1);
     S const scale = S(1) / s.extent;
     constexpr std::uint32_t pairs_of_sphere =
         Block::num_threads > 1 ? pair_distances::triangles / 4 : pair_distances::triangles;
@@ -244,7 +244,7 @@ struct plan_grid {
         if (spheres.size() == 0) break;
         auto const moved = spheres[spheres.size() * (j / parts) / pair_distances::spheres];
         sphere<S> const here = sphere_on_path(moved, static_cast<S>(j / parts * 37 % 64) / S(63));  // all along
-        if (!(here.radius <= reach && here.radius > least) || !is_finite(here.centre)) continue;
+        if (!(here.radius <= reach && here.radius > above) || !is_finite(here.centre)) continue;
         if (j % parts == 0) {
           block.add(s.distances.sampled, 1);
           float const path = static_cast<float>(path_of(moved) * scale) / pair_distances::path_unit;
@@ -427,16 +427,16 @@ struct plan_grid {
     return far;
   }
 
-  /// Gives each axis of the level as many cells as the grid has, and if that is more than `most` in all, cuts the
+  /// Gives each axis of the level as many cells as the grid has, and if that is more than `limit` in all, cuts the
   /// longest axes down to powers of two, where coordinates wrap. Returns the number of cells.
-  static COLLIDE_HD std::uint32_t dimension(grid_header<S> const& g, grid_level<S>& l, std::uint64_t most) {
+  static COLLIDE_HD std::uint32_t dimension(grid_header<S> const& g, grid_level<S>& l, std::uint64_t limit) {
     std::uint64_t cells[3];
     for (int k = 0; k < 3; ++k) {
       cells[k] = std::uint64_t{g.coordinate(l, g.upper[k], k)} + 1;
       l.mask[k] = (1u << 31) - 1;
     }
     // no product overflows: there are at most 2^30 + 1 cells on an axis
-    while (cells[0] * cells[1] > most || cells[0] * cells[1] * cells[2] > most) {
+    while (cells[0] * cells[1] > limit || cells[0] * cells[1] * cells[2] > limit) {
       int longest = 0;
       for (int k = 1; k < 3; ++k) longest = cells[k] > cells[longest] ? k : longest;
       std::uint64_t power = 1;

@@ -44,10 +44,10 @@ COLLIDE_HD_INLINE std::uint64_t place_on_curve(std::uint32_t (&x)[3]) {
 
 /// The position of a place given in parts of the width of the cube, which are limited to 0 and 1.
 template <int Bits, class S>
-COLLIDE_HD_INLINE std::uint64_t place_of_parts(vec3<S> const& parts) {
+COLLIDE_HD_INLINE std::uint64_t place_of_fractions(vec3<S> const& fractions) {
   std::uint32_t x[3];
   for (int k = 0; k < 3; ++k)
-    x[k] = static_cast<std::uint32_t>(static_cast<std::int32_t>(saturate(parts[k]) * S((1 << Bits) - 1)));
+    x[k] = static_cast<std::uint32_t>(static_cast<std::int32_t>(saturate(fractions[k]) * S((1 << Bits) - 1)));
   return place_on_curve<Bits>(x);
 }
 
@@ -76,10 +76,10 @@ struct find_places {
     places[i] = none;
     if (box.is_empty()) return;
     S const half = half_extent(*summary);
-    vec3<S> parts;
+    vec3<S> fractions;
     for (int k = 0; k < 3; ++k)
-      parts[k] = div_rn((box.lower[k] / 2 + box.upper[k] / 2 - summary->lower_of(k)) / 2, half);
-    places[i] = place_of_parts<bits>(parts);
+      fractions[k] = div_rn((box.lower[k] / 2 + box.upper[k] / 2 - summary->lower_of(k)) / 2, half);
+    places[i] = place_of_fractions<bits>(fractions);
   }
 };
 
@@ -171,9 +171,9 @@ struct find_places_of_points {
   COLLIDE_HD void operator()(std::size_t i) const {
     vec3<S> const p = points[i].centre;
     S const half = half_extent(*mesh);
-    vec3<S> parts;
-    for (int k = 0; k < 3; ++k) parts[k] = div_rn(p[k] / 2 - mesh->lower_of(k) / 2 + half, 3 * half);
-    places[i] = place_of_parts<bits>(parts);
+    vec3<S> fractions;
+    for (int k = 0; k < 3; ++k) fractions[k] = div_rn(p[k] / 2 - mesh->lower_of(k) / 2 + half, 3 * half);
+    places[i] = place_of_fractions<bits>(fractions);
     ids[i] = static_cast<id>(i);
   }
 };

@@ -28,11 +28,11 @@ struct curve_places {
   /// The best cut between two: before the one that has the least in common with the one before, from `from` to `to`.
   COLLIDE_HD_INLINE id best_cut(id from, id to) const {
     id best = from;
-    int least = common(from - 1, from);
+    int fewest = common(from - 1, from);
     for (id i = from + 1; i <= to; ++i) {
       int const here = common(i - 1, i);
-      best = here < least ? i : best;
-      least = min(here, least);
+      best = here < fewest ? i : best;
+      fewest = min(here, fewest);
     }
     return best;
   }
@@ -207,7 +207,7 @@ struct divide_groups {
     auto const group = static_cast<id>(i);
     id const end = firsts[i + 1];
     id at = firsts[i];
-    std::uint32_t const own = groups.node_of(group), parts = (end - at + most - 1) / most;
+    std::uint32_t const own = groups.node_of(group), parts = (end - at + width - 1) / width;
     if (parts == 1) {
       set_triangles(own, at, end);
       return;
@@ -217,7 +217,7 @@ struct divide_groups {
     for (std::uint32_t k = 0; k < parts; ++k, ++part) {
       id const left = parts - 1 - k;  // as many of the parts are to come
       id const next =
-          left == 0 ? end : triangles.best_cut(at + 1 + room(end - at - 1, left), min(at + most, end - left));
+          left == 0 ? end : triangles.best_cut(at + 1 + overflow(end - at - 1, left), min(at + width, end - left));
       links.set_node(k, part);
       set_triangles(part, at, next);
       at = next;
@@ -226,10 +226,10 @@ struct divide_groups {
   }
 
  private:
-  static constexpr id most = tree_node::width;
+  static constexpr id width = tree_node::width;
 
   /// How many of `n` triangles have no room in so many parts.
-  static COLLIDE_HD_INLINE id room(id n, id parts) { return n > parts * most ? n - parts * most : 0; }
+  static COLLIDE_HD_INLINE id overflow(id n, id parts) { return n > parts * width ? n - parts * width : 0; }
 
   COLLIDE_HD_INLINE void set_triangles(std::uint32_t number, id first, id end) const {
     for (id t = first; t < end; ++t) {

@@ -137,7 +137,7 @@ class range_divider {
       }
     });
     plane best{-1, 0, 0, 0};
-    float least = std::numeric_limits<float>::infinity();
+    float lowest = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
       plane p = planes[axis];
       if (p.axis < 0) continue;
@@ -153,8 +153,8 @@ class range_divider {
       for (p.bin = 0; p.bin < bins - 1; ++p.bin) {
         box.add(boxes[axis][p.bin]);
         float const all = cost(box, n += counts[axis][p.bin]) + behind[p.bin];
-        if (n == 0 || n == range.size() || !(all < least)) continue;
-        least = all;
+        if (n == 0 || n == range.size() || !(all < lowest)) continue;
+        lowest = all;
         best = p;
       }
     }
@@ -168,8 +168,8 @@ class range_divider {
   /// Moves the end of the left part to where full nodes end, and triangles next to the plane to the other side.
   std::uint32_t fill_nodes(triangle_range const& range, std::uint32_t middle, int axis) {
     constexpr std::uint32_t n = tree_node::width;
-    std::uint32_t const wanted = max((middle - range.begin + n / 2) / n, 1u) * n, most = (range.size() - 1) / n * n;
-    std::uint32_t const to = range.begin + min(wanted, most);
+    std::uint32_t const wanted = max((middle - range.begin + n / 2) / n, 1u) * n, largest = (range.size() - 1) / n * n;
+    std::uint32_t const to = range.begin + min(wanted, largest);
     if (to == middle) return to;
     auto const before = [&](boxed_triangle const& a, boxed_triangle const& b) {
       return a.middle(axis) < b.middle(axis);
@@ -202,16 +202,16 @@ class sah_tree {
     auto const finite = static_cast<std::uint32_t>(end - all_);
     leaves_out_ = finite != n;
     if (finite == 0) return false;
-    nodes_ = memory.reserve(space.resource(), most_nodes(finite));
+    nodes_ = memory.reserve(space.resource(), max_nodes(finite));
     if (is_cut_) {
-      before_.reserve(space.resource(), most_nodes(finite));
-      piece_of_.reserve(space.resource(), width * most_nodes(finite));
+      before_.reserve(space.resource(), max_nodes(finite));
+      piece_of_.reserve(space.resource(), width * max_nodes(finite));
     }
     used_ = 1;
     tasks_ = 0;
     nodes_[0].parent = nodes_[0].slot = 0;
-    most_at_once_ = max(finite / 64, 4096u);
-    waiting_.reserve(space.resource(), most_tasks);
+    max_at_once_ = max(finite / 64, 4096u);
+    waiting_.reserve(space.resource(), max_tasks);
     task const root{range_divider(all_).range_of(0, finite), 0, 0};
     build_node(root, true);
     for_each_block(space, tasks_, [&](std::size_t i) { build_node(waiting_.data()[i], false); });
@@ -238,7 +238,7 @@ class sah_tree {
   boxes_before const* before() const { return is_cut_ ? before_.data() : nullptr; }
 
  private:
-  static constexpr int width = tree_node::width, most_tasks = 1024, most_uneven = 40;  // levels
+  static constexpr int width = tree_node::width, max_tasks = 1024, max_imbalance = 40;  // levels
 
   /// A node to be made.
   struct task {
@@ -249,11 +249,11 @@ class sah_tree {
 
   /// An upper bound: of the parts of ranges that are divided anywhere, of at least 64 triangles, one node each is not
   /// full; and a node above the lowest level has at least two below.
-  static std::size_t most_nodes(std::size_t triangles) { return triangles / 4 + triangles / 32 + 16; }
+  static std::size_t max_nodes(std::size_t triangles) { return triangles / 4 + triangles / 32 + 16; }
 
   /// Makes a node and all below. `postpones`: what has few triangles waits until threads do it.
   void build_node(task const& t, bool postpones) {
-    if (postpones && t.range.size() <= most_at_once_ && tasks_ < most_tasks) {
+    if (postpones && t.range.size() <= max_at_once_ && tasks_ < max_tasks) {
       waiting_.data()[tasks_++] = t;
       return;
     }
@@ -316,16 +316,16 @@ class sah_tree {
 
   /// Divides a range into as many as a node has room for, always the one with the largest surface.
   int divide(task const& t, triangle_range (&parts)[width]) {
-    bool const halves = t.level >= most_uneven;
+    bool const halves = t.level >= max_imbalance;
     parts[0] = t.range;
     int n = 1;
     for (; n < width; ++n) {
       int chosen = -1;
-      float most = -1;
+      float largest = -1;
       for (int k = 0; k < n; ++k) {
         if (parts[k].size() <= width) continue;
         float const size = halves ? static_cast<float>(parts[k].size()) : parts[k].box.half_surface();
-        if (size > most || chosen < 0) most = size, chosen = k;
+        if (size > largest || chosen < 0) largest = size, chosen = k;
       }
       if (chosen < 0) break;
       triangle_range const whole = parts[chosen];
@@ -343,7 +343,7 @@ class sah_tree {
   boxed_triangle* all_ = nullptr;
   tree_node* nodes_ = nullptr;
   std::uint32_t used_ = 0;
-  std::uint32_t most_at_once_ = 0;
+  std::uint32_t max_at_once_ = 0;
   buffer<task> waiting_;
   std::size_t tasks_ = 0;
 };

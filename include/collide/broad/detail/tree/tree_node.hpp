@@ -22,10 +22,10 @@ COLLIDE_HD_INLINE float above(float x) { return -below(-x); }
 /// or -infinity, and ends with a finite one or +infinity.
 COLLIDE_HD_INLINE float float_below(float x) { return x; }
 COLLIDE_HD_INLINE float float_below(double x) {
-  constexpr float most = std::numeric_limits<float>::max();
+  constexpr float largest = std::numeric_limits<float>::max();
   constexpr float far = std::numeric_limits<float>::infinity();
-  if (!(x > -static_cast<double>(most))) return -far;
-  return x < static_cast<double>(most) ? below(static_cast<float>(x)) : most;
+  if (!(x > -static_cast<double>(largest))) return -far;
+  return x < static_cast<double>(largest) ? below(static_cast<float>(x)) : largest;
 }
 template <class S>
 COLLIDE_HD_INLINE float float_above(S x) {
@@ -193,7 +193,7 @@ struct tree_node : tree_boxes {
       keys[k] = key | ((boxes >> k & 1) - 1);
     }
   }
-  static COLLIDE_HD_INLINE std::uint32_t least(std::uint32_t const (&keys)[width]) {
+  static COLLIDE_HD_INLINE std::uint32_t min_of(std::uint32_t const (&keys)[width]) {
     std::uint32_t half[width / 2];
     for (int k = 0; k < width / 2; ++k) half[k] = min(keys[k], keys[k + width / 2]);
     return min(min(half[0], half[1]), min(half[2], half[3]));
@@ -207,8 +207,8 @@ struct tree_node : tree_boxes {
   static COLLIDE_HD_INLINE std::uint32_t key_of(S squared) {
     if (!(squared >= 0)) return 0;
     // a computed square is at most 8 units in the last place too large, and a key drops as many
-    float const most = above(float_above(squared)) * (1 + 16 * ieee_traits<float>::unit_roundoff);
-    return min(to_bits(max(most, std::numeric_limits<float>::min())), 0x7f800000u) | 7u;
+    float const largest = above(float_above(squared)) * (1 + 16 * ieee_traits<float>::unit_roundoff);
+    return min(to_bits(max(largest, std::numeric_limits<float>::min())), 0x7f800000u) | 7u;
   }
 
   static constexpr std::uint32_t none = 0xffffffffu;

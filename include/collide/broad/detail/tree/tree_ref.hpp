@@ -14,9 +14,9 @@ namespace collide::detail {
 /// The most levels of nodes that a tree has. On a device each is of three bits of a place on a curve and a number, but
 /// for the lowest.
 #if defined(__CUDA_ARCH__)
-inline constexpr int most_tree_levels = 32;
+inline constexpr int max_tree_levels = 32;
 #else
-inline constexpr int most_tree_levels = 64;
+inline constexpr int max_tree_levels = 64;
 #endif
 
 /// The number of the lowest bit that is set.
@@ -49,7 +49,7 @@ class tree_cursor {
 
   COLLIDE_HD_INLINE void descend(std::uint32_t node, std::uint32_t boxes) {
     std::uint32_t const kept = high_ >> 24;
-    high_ = ((high_ << 8 | low_ >> 24) & 0xffffffu) | (kept < most_kept ? kept + 1 : most_kept) << 24;
+    high_ = ((high_ << 8 | low_ >> 24) & 0xffffffu) | (kept < max_kept ? kept + 1 : max_kept) << 24;
     low_ = low_ << 8 | boxes;
     node_ = node;
   }
@@ -67,7 +67,7 @@ class tree_cursor {
   COLLIDE_HD_INLINE tree_cursor() = default;
 
  private:
-  static constexpr std::uint32_t none = 0xffffffffu, most_kept = 6;
+  static constexpr std::uint32_t none = 0xffffffffu, max_kept = 6;
 
   COLLIDE_HD_INLINE tree_cursor(std::uint32_t node, std::uint32_t low, std::uint32_t high)
       : node_{node}, low_{low}, high_{high} {}
@@ -162,8 +162,8 @@ struct tree_ref {
       std::uint32_t node, boxes;  ///< those still to be looked into
       std::uint32_t nearest;      ///< the least key of these
     };
-    level above[most_tree_levels], here;
-    std::uint32_t keys[tree_node::width], most = tree_node::key_of(bound);
+    level above[max_tree_levels], here;
+    std::uint32_t keys[tree_node::width], limit = tree_node::key_of(bound);
     auto const enter = [&](std::uint32_t node, std::uint32_t boxes) {
       here = {node, boxes & nodes[node].there, 0};
       multiversioned([&] { nodes[node].find_keys(p, here.boxes, keys); });
@@ -173,24 +173,24 @@ struct tree_ref {
       // threads of a warp come to their triangles at different times, and look at them at the same
       std::uint32_t child;
       for (;;) {
-        std::uint32_t const key = tree_node::least(keys), k = key % tree_node::width;
+        std::uint32_t const key = tree_node::min_of(keys), k = key % tree_node::width;
         level next{0, 0xff, 0};
-        if (key <= most) {
+        if (key <= limit) {
           next.node = child = nodes[here.node].child[k];
           tree_node::remove(keys, key);
           here.boxes &= ~(1u << k);
           if ((child & tree_node::leaf) != 0) break;
-          here.nearest = tree_node::least(keys);
-          if (here.nearest <= most) above[levels++] = here;
+          here.nearest = tree_node::min_of(keys);
+          if (here.nearest <= limit) above[levels++] = here;
         } else {
           do {
             if (levels == 0) return;
             next = above[--levels];
-          } while (next.nearest > most);
+          } while (next.nearest > limit);
         }
         enter(next.node, next.boxes);
       }
-      most = tree_node::key_of(f(child & ~tree_node::leaf));
+      limit = tree_node::key_of(f(child & ~tree_node::leaf));
     }
   }
 
@@ -209,7 +209,7 @@ struct tree_ref {
     struct level {
       std::uint32_t node, boxes;  ///< those still to be looked into
     };
-    level stack[most_tree_levels];
+    level stack[max_tree_levels];
     stack[0] = {0, nodes[0].overlapping(box)};
     for (int top = 0; top >= 0;) {
       level& here = stack[top];

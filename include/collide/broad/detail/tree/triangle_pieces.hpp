@@ -52,8 +52,8 @@ struct triangle_shape {
     if (!is_finite(t)) return;
     vec3<double> const a = t.a.template cast<double>(), u = t.b.template cast<double>() - a,
                        v = t.c.template cast<double>() - a;
-    vec3<double> const least = min(min<double>(u, v), vec3<double>(0, 0, 0)),
-                       sides = max(max<double>(u, v), vec3<double>(0, 0, 0)) - least;
+    vec3<double> const lowest = min(min<double>(u, v), vec3<double>(0, 0, 0)),
+                       sides = max(max<double>(u, v), vec3<double>(0, 0, 0)) - lowest;
     half_surface = sides.x() * sides.y() + (sides.y() * sides.z() + sides.z() * sides.x());
     area = std::sqrt(cross(u, v).squaredNorm()) / 2;
     length = std::sqrt(std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
@@ -91,8 +91,8 @@ class triangle_pieces {
         });
     if (!(total.wasted > total.all / 2) || !std::isfinite(total.all)) return 0;
     std::uint32_t* const first = first_.reserve(space.resource(), n + 1);
-    std::size_t const most_extra = min(15 * n, max(3 * n, std::size_t{1} << 18));
-    std::size_t const extra = min(most_extra, static_cast<std::size_t>(wanted_pieces(space, mesh) - 1) * n);
+    std::size_t const max_extra = min(15 * n, max(3 * n, std::size_t{1} << 18));
+    std::size_t const extra = min(max_extra, static_cast<std::size_t>(wanted_pieces(space, mesh) - 1) * n);
     space.for_each(n, [&](std::size_t i) {
       first[i] = pieces_of(triangle_shape(mesh[i]), static_cast<double>(extra) / total.roots);
     });
@@ -115,7 +115,7 @@ class triangle_pieces {
   triangle_piece const* data() const { return pieces_.data(); }
 
  private:
-  static constexpr int most = 64;  ///< pieces of a triangle
+  static constexpr int capacity = 64;  ///< pieces of a triangle
 
   /// A sum over the triangles of a mesh, the same however many threads there are.
   template <class Sum, class Space, class Add, class Join>
@@ -150,16 +150,17 @@ class triangle_pieces {
     auto const join = [](box& to, box const& b) { to = typename box::merge{}(to, b); };
     box const all = sum_of_parts<box>(
         space, mesh, box::empty(), [&](box& to, triangle<S> const& t) { join(to, box_of(t)); }, join);
-    double const least = all.max_extent() / 1024;  // so that what is flat has a volume
+    double const lowest = all.max_extent() / 1024;  // so that what is flat has a volume
     double const around = sum_of_parts<double>(
         space, mesh, 0.0,
         [&](double& to, triangle<S> const& t) {
           box const b = box_of(t);
-          double part = b.is_empty() ? 0 : 1;
-          for (int k = 0; k < 3; ++k) part *= (b.upper[k] - b.lower[k] + least) / (all.upper[k] - all.lower[k] + least);
-          to += part;
+          double fraction = b.is_empty() ? 0 : 1;
+          for (int k = 0; k < 3; ++k)
+            fraction *= (b.upper[k] - b.lower[k] + lowest) / (all.upper[k] - all.lower[k] + lowest);
+          to += fraction;
         },
-        [](double& to, double part) { to += part; });
+        [](double& to, double fraction) { to += fraction; });
     constexpr double few = 2;  // boxes; docs/development/experiments.md
     double const pieces = std::sqrt(around / few);
     return pieces < 16 ? static_cast<int>(max(pieces, 2.0)) : 16;
@@ -168,8 +169,8 @@ class triangle_pieces {
   /// In proportion to what makes the sum of the boxes least, but none shorter than wide.
   static std::uint32_t pieces_of(triangle_shape const& s, double for_root) {
     double const wanted = 1 + std::sqrt(s.wasted()) * for_root;
-    double const slender = s.area > 0 ? s.length * s.length / (2 * s.area) : most;
-    return static_cast<std::uint32_t>(min(min(wanted, max(slender, 1.0)), static_cast<double>(most)));
+    double const slender = s.area > 0 ? s.length * s.length / (2 * s.area) : capacity;
+    return static_cast<std::uint32_t>(min(min(wanted, max(slender, 1.0)), static_cast<double>(capacity)));
   }
 
   /// Cuts a triangle by planes at equal distances across the longest side of its box.
@@ -203,13 +204,13 @@ class triangle_pieces {
     aabb<double> box = aabb<double>::empty();
     for (int c = 0; c < 3; ++c) {
       vec3<double> const &a = corners[c], &b = corners[(c + 1) % 3];
-      double const begin = a[axis], way = b[axis] - begin;
+      double const begin = a[axis], along = b[axis] - begin;
       if (min(begin, b[axis]) > until || max(begin, b[axis]) < from) continue;
       for (double const plane : {from, until}) {
         // of an edge along the planes both ends
-        double const part = way != 0 ? saturate((plane - begin) / way) : (plane == from ? 0.0 : 1.0);
+        double const fraction = along != 0 ? saturate((plane - begin) / along) : (plane == from ? 0.0 : 1.0);
         for (int j = 0; j < 3; ++j) {
-          double const x = a[j] + part * (b[j] - a[j]);
+          double const x = a[j] + fraction * (b[j] - a[j]);
           box.lower[j] = min(box.lower[j], x);
           box.upper[j] = max(box.upper[j], x);
         }
@@ -270,7 +271,7 @@ template <class S>
 class sampled_triangles {
  public:
   explicit sampled_triangles(mesh_view<S> const& mesh) : all_{mesh.size()}, count_{0} {
-    std::size_t const n = min(all_, std::size_t{most});
+    std::size_t const n = min(all_, std::size_t{capacity});
     double wasted = 0, surface = 0;
     for (std::size_t i = 0; i < n; ++i) {
       triangle<S> const t = mesh[all_ / n * i + all_ % n * i / n];
@@ -289,9 +290,9 @@ class sampled_triangles {
 
   /// The mean of what spheres reach, at rest or in motion, from at most so many of them. A triangle is in `pieces`.
   template <class Spheres>
-  reached_by_sphere reached(Spheres const& spheres, std::size_t most_spheres, double pieces,
+  reached_by_sphere reached(Spheres const& spheres, std::size_t max_spheres, double pieces,
                             planned_candidates<S> const& is_candidate = {}) const {
-    std::size_t const n = min(spheres.size(), most_spheres);
+    std::size_t const n = min(spheres.size(), max_spheres);
     reached_by_sphere sum{0, 0, 0, 0};
     for (std::size_t i = 0; i < n; ++i) {
       sphere<S> const s = swept_bounding_sphere(spheres[spheres.size() / n * i + spheres.size() % n * i / n]);
@@ -315,14 +316,14 @@ class sampled_triangles {
   }
 
  private:
-  static constexpr int most = 128;
+  static constexpr int capacity = 128;
 
   static S distance_squared(triangle<S> const& t, sphere<S> const& s) {
     local_triangle<S> const l = to_local<S>(t, s);
     return closest_to_origin(l, cross<S>(l.b - l.a, l.c - l.a)).distance_squared;
   }
 
-  triangle<S> triangles_[most];
+  triangle<S> triangles_[capacity];
   std::size_t all_;  ///< of the mesh
   int count_;        ///< that are finite
   bool are_slender_;

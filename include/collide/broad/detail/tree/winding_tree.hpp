@@ -13,10 +13,10 @@ namespace collide::detail {
 
 /// The levels of a tree whose nodes are full, the root first: how many nodes each has, and the number of its first.
 struct tree_levels {
-  static constexpr int most = 12;
+  static constexpr int max_levels = 12;
   static constexpr std::size_t width = 8;
 
-  std::size_t count[most], first[most];  ///< of level 0, with the triangles, and of those above
+  std::size_t count[max_levels], first[max_levels];  ///< of level 0, with the triangles, and of those above
   int levels;
   std::size_t nodes;  ///< in all
 

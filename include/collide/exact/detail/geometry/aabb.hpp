@@ -65,8 +65,8 @@ struct alignas(4 * sizeof(S)) triangle_aabb : aabb<S> {
 
   COLLIDE_HD_INLINE bool overlaps(vec3<S> const& c, S radius) const {
     S const x = axis_distance(0, c.x()), y = axis_distance(1, c.y()), z = axis_distance(2, c.z()),
-            most = padded_radius(radius) + padding;
-    return x * x + (y * y + z * z) <= most * most;
+            limit = padded_radius(radius) + padding;
+    return x * x + (y * y + z * z) <= limit * limit;
   }
 
   /// How far a coordinate is outside the box along an axis.

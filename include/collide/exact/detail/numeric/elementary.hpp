@@ -30,9 +30,9 @@ COLLIDE_HD_INLINE sin_cos sin_cos_near_zero(double x) {
 /// Sine and cosine of an angle in turns of 2 pi: exact at quarters of a turn, elsewhere to within 1e-15. NaN unless the
 /// angle is finite.
 COLLIDE_HD_INLINE sin_cos sin_cos_of_turns(double turns) {
-  double const part = turns - std::floor(turns);  // exact, or 1 of what is just below 0
-  double const quarter = std::floor(mul_rn(part, 4) + 0.5);
-  sin_cos const near = sin_cos_near_zero(mul_rn(part - mul_rn(quarter, 0.25), 6.283185307179586));
+  double const fraction = turns - std::floor(turns);  // exact, or 1 of what is just below 0
+  double const quarter = std::floor(mul_rn(fraction, 4) + 0.5);
+  sin_cos const near = sin_cos_near_zero(mul_rn(fraction - mul_rn(quarter, 0.25), 6.283185307179586));
   if (quarter == 1) return {near.cos, -near.sin};
   if (quarter == 2) return {-near.sin, -near.cos};
   if (quarter == 3) return {-near.cos, near.sin};
@@ -44,16 +44,16 @@ COLLIDE_HD_INLINE sin_cos sin_cos_of_turns(double turns) {
 COLLIDE_HD_INLINE double angle_of(double y, double x) {
   constexpr double pi = 3.141592653589793;
   double const across = y < 0 ? -y : y, along = x < 0 ? -x : x;
-  double const least = min(across, along), most = max(across, along);
-  if (!(most > 0)) return 0;
+  double const smaller = min(across, along), larger = max(across, along);
+  if (!(larger > 0)) return 0;
   // atan(t) = pi/4 + atan((t - 1) / (t + 1)), where t is above tan(pi/8)
-  bool const steep = least > mul_rn(most, 0.41421356237309503);
-  double const t = steep ? div_rn(least - most, least + most) : div_rn(least, most), tt = mul_rn(t, t);
-  constexpr double parts[] = {1.0 / 43, 1.0 / 41, 1.0 / 39, 1.0 / 37, 1.0 / 35, 1.0 / 33, 1.0 / 31, 1.0 / 29,
-                              1.0 / 27, 1.0 / 25, 1.0 / 23, 1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13,
-                              1.0 / 11, 1.0 / 9,  1.0 / 7,  1.0 / 5,  1.0 / 3,  1.0};
+  bool const steep = smaller > mul_rn(larger, 0.41421356237309503);
+  double const t = steep ? div_rn(smaller - larger, smaller + larger) : div_rn(smaller, larger), tt = mul_rn(t, t);
+  constexpr double coefficients[] = {1.0 / 43, 1.0 / 41, 1.0 / 39, 1.0 / 37, 1.0 / 35, 1.0 / 33, 1.0 / 31, 1.0 / 29,
+                                     1.0 / 27, 1.0 / 25, 1.0 / 23, 1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13,
+                                     1.0 / 11, 1.0 / 9,  1.0 / 7,  1.0 / 5,  1.0 / 3,  1.0};
   double series = 0;
-  for (double const part : parts) series = part - mul_rn(tt, series);
+  for (double const fraction : coefficients) series = fraction - mul_rn(tt, series);
   double angle = (steep ? pi / 4 : 0) + mul_rn(t, series);
   if (across > along) angle = pi / 2 - angle;
   if (x < 0) angle = pi - angle;

@@ -16,7 +16,7 @@ namespace collide::detail {
 /// A weight times at most `Factors` numbers.
 template <std::size_t Factors>
 struct weighted_product {
-  static constexpr int most_factors = static_cast<int>(Factors);
+  static constexpr int max_factors = static_cast<int>(Factors);
 
   std::int8_t weight;  ///< -4, -2, -1, 1, 2 or 4
   std::uint8_t count;
@@ -28,7 +28,7 @@ class exact_products {
  public:
   template <class... Places>
   COLLIDE_HD void add(int weight, Places... factors) {
-    static_assert(sizeof...(factors) <= exact_product::most_factors, "collide: no formula has that many factors");
+    static_assert(sizeof...(factors) <= exact_product::max_factors, "collide: no formula has that many factors");
     products_[count_++] = {static_cast<std::int8_t>(weight),
                            static_cast<std::uint8_t>(sizeof...(factors)),
                            {static_cast<std::uint8_t>(factors)...}};
@@ -256,7 +256,7 @@ class exact_sum {
       int rest = c, exponent = -lowest_ + magnitude_exponent, words = 1;
       bool negative = weight < 0;
       // guard: product-room
-      std::uint32_t product[2 * Product::most_factors + 1] = {1};
+      std::uint32_t product[2 * Product::max_factors + 1] = {1};
       for (int i = 0; i < of.count; ++i) {
         components_view const components = numbers_[of.factors[i]];
         dyadic const f = components[rest % components.count];

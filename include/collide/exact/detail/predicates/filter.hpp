@@ -99,10 +99,10 @@ COLLIDE_HD_INLINE verdict filtered_test(local_triangle<T> const& t, T size) {
   // guard: error-of-miss
   T const radius_high = t.radius + error;
   auto const is_separating = [&](vec3<T> const& g, T gg) {
-    T const least = min(min(dot_mul_add(t.a, g), dot_mul_add(t.b, g)), dot_mul_add(t.c, g));
+    T const lowest = min(min(dot_mul_add(t.a, g), dot_mul_add(t.b, g)), dot_mul_add(t.c, g));
     // guard: least, shortest
-    return (gg >= bounds::shortest) & (least > 0) &
-           (mul_rn(least, least) > mul_rn(mul_rn(radius_high, radius_high), gg));
+    return (gg >= bounds::shortest) & (lowest > 0) &
+           (mul_rn(lowest, lowest) > mul_rn(mul_rn(radius_high, radius_high), gg));
   };
   bool miss = is_separating(q, s);
   if (Branchless || (face && !miss)) {  // close to the plane, its normal has a smaller relative error than q

@@ -43,25 +43,25 @@ COLLIDE_HD_INLINE closest_approach<T> approach(local_sweep<T> const& l) {
     vec3<T> const e = to - from;
     T const ee = dot(e, e), de = d_to - d_from, ev = dot(e, from);
     T const first = saturate(mul_rn(mul_rn(d_from, ee) - mul_rn(de, ev), inverse(mul_rn(dd, ee) - mul_rn(de, de))));
-    T const part = saturate(mul_rn(mul_rn(de, first) - ev, inverse(ee)));
-    T const time = saturate(mul_rn(mul_rn(de, part) + d_from, inverse_dd));
-    vec3<T> const offset = from + scaled(e, part) - scaled(d, time);
+    T const fraction = saturate(mul_rn(mul_rn(de, first) - ev, inverse(ee)));
+    T const time = saturate(mul_rn(mul_rn(de, fraction) + d_from, inverse_dd));
+    vec3<T> const offset = from + scaled(e, fraction) - scaled(d, time);
     T const square = dot(offset, offset);
     if (square <= best.distance_squared) {
       best.time = time;
       best.offset = offset;
       best.distance_squared = square;
       edge = e;
-      weights(part);
+      weights(fraction);
     }
   };
   auto const weigh = [&](T v, T w) {
     best.v = v;
     best.w = w;
   };
-  along(t.a, t.b, da, db, [&](T part) { weigh(part, T(0)); });
-  along(t.b, t.c, db, dc, [&](T part) { weigh(1 - part, part); });
-  along(t.c, t.a, dc, da, [&](T part) { weigh(T(0), 1 - part); });
+  along(t.a, t.b, da, db, [&](T fraction) { weigh(fraction, T(0)); });
+  along(t.b, t.c, db, dc, [&](T fraction) { weigh(1 - fraction, fraction); });
+  along(t.c, t.a, dc, da, [&](T fraction) { weigh(T(0), 1 - fraction); });
   best.normal = cross(d, edge);
 
   vec3<T> const n = cross<T>(t.b - t.a, t.c - t.a);
@@ -71,7 +71,8 @@ COLLIDE_HD_INLINE closest_approach<T> approach(local_sweep<T> const& l) {
   T const wa = dot(cross(there.b, there.c), n), wb = dot(cross(there.c, there.a), n),
           wc = dot(cross(there.a, there.b), n);
   if (wa > 0 && wb > 0 && wc > 0) {
-    T const part = div_rn(T(1), wa + wb + wc), v = saturate(mul_rn(wb, part)), w = min(mul_rn(wc, part), 1 - v);
+    T const fraction = div_rn(T(1), wa + wb + wc), v = saturate(mul_rn(wb, fraction)),
+            w = min(mul_rn(wc, fraction), 1 - v);
     vec3<T> const offset = there.a + (scaled<T>(t.b - t.a, v) + scaled<T>(t.c - t.a, w));
     T const square = dot(offset, offset);
     if (square <= best.distance_squared) best = {time, v, w, offset, square, n};
@@ -93,10 +94,10 @@ COLLIDE_HD_INLINE verdict filtered_test(local_sweep<T> const& l, T size) {
   if (!aabb_within(l, radius_high)) return verdict::miss;
 
   auto const is_separating = [&](vec3<T> const& g, T gg) {
-    T const least =
+    T const lowest =
         min(min(dot_mul_add(t.a, g), dot_mul_add(t.b, g)), dot_mul_add(t.c, g)) - max(dot_mul_add(l.path, g), T(0));
-    return gg >= filter_bounds<T>::shortest && least > 0 &&
-           mul_rn(least, least) > mul_rn(mul_rn(radius_high, radius_high), gg);
+    return gg >= filter_bounds<T>::shortest && lowest > 0 &&
+           mul_rn(lowest, lowest) > mul_rn(mul_rn(radius_high, radius_high), gg);
   };
   // for most, the direction to the middle of the prism separates
   vec3<T> const middle = (t.a + t.b + t.c) - scaled(l.path, T(1.5));

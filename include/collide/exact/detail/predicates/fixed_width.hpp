@@ -94,9 +94,9 @@ class fixed_width_predicate {
     int_words<2> component[3];
   };
 
-  static constexpr int most_bits = 126;
+  static constexpr int max_bits = 126;
   // guard: fixed-shift
-  static constexpr int most_length = 126;  ///< of a number: a bit of two words is for differences, one for the sign
+  static constexpr int max_length = 126;  ///< of a number: a bit of two words is for differences, one for the sign
 
   int exponent_ = 1 << 30;  ///< as a power of two
   bool fits_ = true;
@@ -113,13 +113,13 @@ class fixed_width_predicate {
     if (d.mantissa == 0) return 0;
     int const shift = d.exponent - exponent_;
     // guard: fixed-far
-    fits_ = fits_ && shift + d.length() <= most_length;
+    fits_ = fits_ && shift + d.length() <= max_length;
     return static_cast<uint128>(d.mantissa) << (shift & 127);
   }
 
   COLLIDE_HD int_words<2> narrow(uint128 x) {
-    constexpr uint128 most = uint128{1} << most_bits;
-    fits_ = fits_ && x + most <= 2 * most;  // from -most to most
+    constexpr uint128 limit = uint128{1} << max_bits;
+    fits_ = fits_ && x + limit <= 2 * limit;  // from -most to most
     return {{static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(x >> 64)}};
   }
 

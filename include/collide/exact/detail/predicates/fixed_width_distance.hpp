@@ -21,7 +21,7 @@ namespace collide::detail {
 class fixed_width_units {
  public:
   // guard: nearest-fit
-  static constexpr int most_bits = 124;  ///< of a difference
+  static constexpr int max_bits = 124;  ///< of a difference
 
   COLLIDE_HD void include(vec3<double> const& point) {
     COLLIDE_NO_UNROLL
@@ -38,8 +38,8 @@ class fixed_width_units {
     include(t.c);
   }
 
-  /// True if differences of all that was included are integers of at most `most_bits` bits.
-  COLLIDE_HD bool fit() const { return top_ - exponent_ < most_bits; }
+  /// True if differences of all that was included are integers of at most `max_bits` bits.
+  COLLIDE_HD bool fit() const { return top_ - exponent_ < max_bits; }
 
   /// to - from, if all fit.
   COLLIDE_HD int_words<2> difference(double to, double from) const {

@@ -37,7 +37,7 @@ struct bodies_ref {
 
   /// True if `test_occupied` can tell of spheres of this radius whether they may touch a triangle.
   COLLIDE_HD_INLINE bool has_single_cell_lookup(S radius) const {
-    return whole.has_single_cell_lookup(radius + quick.room) && quick.serve(radius);
+    return whole.has_single_cell_lookup(radius + quick.margin) && quick.serve(radius);
   }
   COLLIDE_HD_INLINE auto occupancy() const { return whole.occupancy(); }
 
@@ -75,17 +75,17 @@ struct bodies_ref {
     return {{0, 0, 0, 0}, mesh.first_frame, 0, false, mesh.size() == 0};
   }
 
-  /// `part` is how much of the step is over.
+  /// `fraction` is how much of the step is over.
   template <class Sphere>
-  COLLIDE_HD bool next(Sphere const& shape, double part, body_cursor& c, std::uint32_t most,
+  COLLIDE_HD bool next(Sphere const& shape, double fraction, body_cursor& c, std::uint32_t max_count,
                        candidate_range& range) const {
     COLLIDE_NO_UNROLL
     for (; !c.ended && c.frame < mesh.frame_count; ++c.frame, c.has_begun = false) {
       if (is_far(c.frame, shape)) continue;
-      Sphere const seen = mesh.seen_from(c.frame, shape, part);
+      Sphere const seen = mesh.seen_from(c.frame, shape, fraction);
       if (!c.has_begun) static_cast<candidate_cursor&>(c) = whole.begin(seen);
       c.has_begun = true;
-      if (!whole.next(seen, c, most, range)) continue;
+      if (!whole.next(seen, c, max_count, range)) continue;
       c.frame_of_last = c.frame;
       if (static_cast<candidate_cursor&>(c).at_end()) skip_far(c, shape);
       return true;

@@ -80,7 +80,7 @@ struct advance_bodies {
   double const* time;
   double dt;
   Motion motion;
-  S most;  ///< a body may move by in a step: the radius of the smallest particle
+  S limit;  ///< a body may move by in a step: the radius of the smallest particle
   bool swept;
   bool starts, is_placed;  ///< `before` the step it was not where it was told to be last
 
@@ -141,7 +141,7 @@ struct advance_bodies {
     f.reach = static_cast<S>(mul_rn(reach, 1 + 1e-5) + mul_rn(16 * eps, norm(from) + norm(to)) + tiny);
     f.shrink = static_cast<S>(swept ? 1 - 1e-5 - turned : 1 - 1e-5);
     if (starts) return;
-    double const radius = static_cast<double>(most);
+    double const radius = static_cast<double>(limit);
     if (!swept && norm(by) + mul_rn(turned, r.radius) > radius) fetch_add(&report->fast_steps, 1u);
     double const units = turned > 1.5 ? 2048 : 512;
     bool const is_rough = mul_rn(units * eps, norm(from) + norm(to) + r.radius) > radius;
@@ -195,8 +195,8 @@ class body_memory {
 
   /// Throws `error` unless these can be bodies of a mesh of so many triangles. `call`: what gets them, for messages.
   static void check(std::vector<body> const& bodies, std::size_t triangles, S const*, char const* call = "set_mesh") {
-    constexpr std::size_t most = moving_bodies<Motion>::max_bodies;
-    if (bodies.size() > most) throw error("collide: " + std::string(call) + ": there are more than 64 bodies");
+    constexpr std::size_t limit = moving_bodies<Motion>::max_bodies;
+    if (bodies.size() > limit) throw error("collide: " + std::string(call) + ": there are more than 64 bodies");
     std::vector<bool> taken(triangles);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       body const& b = bodies[k];
@@ -240,7 +240,7 @@ class body_memory {
     for (std::size_t k = 1; k < frames; ++k) quick[k].slack = std::numeric_limits<S>::infinity();  // not known yet
     double extent = 0;
     for (body_record const& r : records) extent = max(extent, sqrt_rn(dot(r.centre, r.centre)) + r.radius);
-    room_ = float_frame_margin<S>(extent);
+    margin_ = float_frame_margin<S>(extent);
     std::vector<body_state> const states(count_);
     space.copy_from_host(records_.reserve(resource, count_), records.data(), count_);
     space.copy_from_host(states_.reserve(resource, count_), states.data(), count_);
@@ -254,17 +254,18 @@ class body_memory {
 
   /// Moves the bodies to where they are `dt` later; see `advance_bodies`.
   template <class Space>
-  void advance(Space& space, Motion const& of_all, double const* time, double dt, S most, bool swept, bool starts) {
+  void advance(Space& space, Motion const& of_all, double const* time, double dt, S limit, bool swept, bool starts) {
     if (count_ == 0) return;
     bool const is_placed = is_placed_ && !starts;
     is_placed_ = !(starts && are_driven());
-    space.for_each(count_, advance_bodies<S, Motion>{records_.data(), states_.data(), frames_.data(), quick_.data(),
-                                                     report_.data(), time, dt, of_all, most, swept, starts, is_placed});
+    space.for_each(count_,
+                   advance_bodies<S, Motion>{records_.data(), states_.data(), frames_.data(), quick_.data(),
+                                             report_.data(), time, dt, of_all, limit, swept, starts, is_placed});
   }
 
   template <class Triangles>
   bodies_ref<S, Triangles> ref(Triangles const& whole, mesh_view<S> const& mesh, S dt) const {
-    return {whole, moving(mesh, dt), {quick_.data(), room_}};
+    return {whole, moving(mesh, dt), {quick_.data(), margin_}};
   }
 
   /// The mesh, for kernels, with the frames of its bodies.
@@ -280,7 +281,7 @@ class body_memory {
   static constexpr bool are_driven() { return std::is_same<Motion, driven>::value; }
 
   /// How much larger than the particles' the radius is that the mesh is to be indexed for.
-  S room() const { return room_; }
+  S margin() const { return margin_; }
 
  private:
   static frame_pose identity() { return {{0, 0, 0}, 1, {0, 0, 0}}; }
@@ -317,7 +318,7 @@ class body_memory {
   buffer<body_state> states_;
   buffer<body_frame<S>> frames_;
   buffer<float_frame<S>> quick_;
-  S room_ = 0;
+  S margin_ = 0;
   bool is_placed_ = false;  ///< of bodies that the caller drives: they have begun where the caller wants them
   buffer<body_report> report_;
 };

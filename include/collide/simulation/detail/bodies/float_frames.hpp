@@ -14,9 +14,9 @@
 /// `float_frame_error` (|v| + |m|). The position of the body is not in it: only its place in its own frame is.
 ///
 /// If a sphere of radius r touches a triangle at p, one of radius r + |q - p| does at q. So it is in a cell that has
-/// triangles if the grid serves spheres of that radius: grids of scenes with bodies have that much `room`. Of particles
-/// that are not far, |v| <= (1 + 2e-5) (reach + r). That, what is above the first order, and the rounding of the radius
-/// that the grid is made for take less than the 5 u by which `float_frame_error` exceeds 11 u.
+/// triangles if the grid serves spheres of that radius: grids of scenes with bodies have that much `margin`. Of
+/// particles that are not far, |v| <= (1 + 2e-5) (reach + r). That, what is above the first order, and the rounding of
+/// the radius that the grid is made for take less than the 5 u by which `float_frame_error` exceeds 11 u.
 #pragma once
 
 #include <cstdint>
@@ -66,12 +66,12 @@ struct alignas(16) float_frame {
     }
     q.reach = f.reach;
     // where squares vanish a particle may seem not to be far
-    constexpr S least = std::numeric_limits<S>::min(), most = std::numeric_limits<S>::max();
-    double const tiny = 4 * sqrt_rn(static_cast<double>(least)), far = sqrt_rn(dot(local, local));
+    constexpr S smallest = std::numeric_limits<S>::min(), largest = std::numeric_limits<S>::max();
+    double const tiny = 4 * sqrt_rn(static_cast<double>(smallest)), far = sqrt_rn(dot(local, local));
     double const slack = mul_rn(static_cast<double>(float_frame_error<S>), static_cast<double>(f.reach) + far + tiny);
-    bool const has_squares = static_cast<double>(f.reach) + far < sqrt_rn(static_cast<double>(most)) / 4;
+    bool const has_squares = static_cast<double>(f.reach) + far < sqrt_rn(static_cast<double>(largest)) / 4;
     q.slack =
-        has_squares ? static_cast<S>(slack + 32 * static_cast<double>(least)) : std::numeric_limits<S>::infinity();
+        has_squares ? static_cast<S>(slack + 32 * static_cast<double>(smallest)) : std::numeric_limits<S>::infinity();
     return q;
   }
 
@@ -108,11 +108,11 @@ struct alignas(16) float_frame {
 template <class S>
 struct float_frames {
   float_frame<S> const* frames;
-  S room;  ///< how much larger than the particles' the radius is that the grid has to serve
+  S margin;  ///< how much larger than the particles' the radius is that the grid has to serve
 
   /// True if a particle's place may be off by no more than there is room for, but for how far bodies are.
   COLLIDE_HD_INLINE bool serve(S radius) const {
-    return mul_rn(float_frame_error<S>, radius) <= room && is_finite(mul_rn(4 * radius, radius));
+    return mul_rn(float_frame_error<S>, radius) <= margin && is_finite(mul_rn(4 * radius, radius));
   }
 
   /// Sets near[k] for those of some particles that may touch a triangle of the frames from `first` to before `end`:
@@ -120,12 +120,12 @@ struct float_frames {
   template <unsigned N>
   COLLIDE_HD_INLINE bool test_occupied(occupancy_view<S> const& occupancy, int first, int end, S const (&x)[N],
                                        S const (&y)[N], S const (&z)[N], S radius, bool (&near)[N]) const {
-    S const most = room - mul_rn(float_frame_error<S>, radius);
+    S const largest = margin - mul_rn(float_frame_error<S>, radius);
     for (unsigned k = 0; k < N; ++k) near[k] = false;
     COLLIDE_NO_UNROLL
     for (int i = first; i < end; ++i) {
       float_frame<S> const& f = frames[i];
-      if (!(f.slack <= most)) return false;
+      if (!(f.slack <= largest)) return false;
       std::uint32_t close[N];
       std::uint32_t const count = f.find_close(x, y, z, radius, close);
       if (count == 0) continue;

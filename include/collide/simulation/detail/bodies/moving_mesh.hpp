@@ -113,11 +113,11 @@ struct moving_mesh : mesh_view<S> {
     vec3<double> const ab = t.b.template cast<double>() - a, ac = t.c.template cast<double>() - a;
     vec3<double> const to_point = point.template cast<double>() - a, normal = cross(ab, ac);
     double const area = dot(normal, normal);
-    auto const part = [&](vec3<double> const& opposite) {
+    auto const fraction = [&](vec3<double> const& opposite) {
       double const p = area > 0 ? div_rn(dot(opposite, normal), area) : 0;
       return p > 0 ? min(p, 1.0) : 0.0;
     };
-    double const b = part(cross(to_point, ac)), c = part(cross(ab, to_point));
+    double const b = fraction(cross(to_point, ac)), c = fraction(cross(ab, to_point));
     auto const of_corner = [&](unsigned k) {
       S const* const v = vertex_velocities + 3 * this->corner(triangle, k);
       return vec3<double>(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
@@ -126,9 +126,9 @@ struct moving_mesh : mesh_view<S> {
   }
 
   /// A body's pose at a part of the step.
-  COLLIDE_HD_INLINE frame_pose pose_at(int frame, double part) const {
+  COLLIDE_HD_INLINE frame_pose pose_at(int frame, double fraction) const {
     body_frame<S> const& f = frames[frame];
-    return part <= 0 ? f.before : part >= 1 ? f.now : between(f.before, f.now, part);
+    return fraction <= 0 ? f.before : fraction >= 1 ? f.now : between(f.before, f.now, fraction);
   }
 
   /// A sphere as a body sees it at the end of the step.
@@ -144,23 +144,23 @@ struct moving_mesh : mesh_view<S> {
     return seen_from(frame, s, 0);
   }
   /// A sphere that moves for the rest of the step from a part of it on, as a body sees it.
-  COLLIDE_HD_INLINE moving_sphere<S> seen_from(int frame, moving_sphere<S> const& s, double part) const {
+  COLLIDE_HD_INLINE moving_sphere<S> seen_from(int frame, moving_sphere<S> const& s, double fraction) const {
     if (frame == 0) return s;
     vec3<double> const begin = s.centre.template cast<double>(), displacement = s.displacement.template cast<double>();
-    vec3<double> const from = pose_at(frame, part).to_local(begin);
+    vec3<double> const from = pose_at(frame, fraction).to_local(begin);
     vec3<double> const to = frames[frame].now.to_local(begin + displacement);
     return {{rounded_to<S>(from), s.radius}, rounded_to<S>(to - from)};
   }
 
   /// A point of a body's frame, where it is in the world at a part of the step.
-  COLLIDE_HD_INLINE vec3<S> in_world(int frame, vec3<S> const& x, double part) const {
-    return frame == 0 ? x : rounded_to<S>(pose_at(frame, part).to_world(x.template cast<double>()));
+  COLLIDE_HD_INLINE vec3<S> in_world(int frame, vec3<S> const& x, double fraction) const {
+    return frame == 0 ? x : rounded_to<S>(pose_at(frame, fraction).to_world(x.template cast<double>()));
   }
 
   /// A contact in a body's frame at a part of the step, as it is in the world.
-  COLLIDE_HD_INLINE void to_world(contact<S>& c, int frame, double part) const {
+  COLLIDE_HD_INLINE void to_world(contact<S>& c, int frame, double fraction) const {
     if (frame == 0) return;
-    frame_pose const p = pose_at(frame, part);
+    frame_pose const p = pose_at(frame, fraction);
     c.point = rounded_to<S>(p.to_world(c.point.template cast<double>()));
     c.normal = rounded_to<S>(p.rotated(c.normal.template cast<double>()));
   }

@@ -21,7 +21,7 @@ template <class S, class Effects>
 struct update_and_check_skin {
   particle_state<S, typename Effects::all> state;
   sorted_particles<S, Effects> order;
-  S most;  ///< that a particle may have moved
+  S limit;  ///< that a particle may have moved
 
   using ordered = sorted_particles<S, Effects>;
 
@@ -50,7 +50,7 @@ struct update_and_check_skin {
     packed_sphere<S> const now = order.store(i, p);
     auto const before = order.references[i];
     vec3<S> const moved = order.between(before, now);
-    S const left = most - before.growth(now);
+    S const left = limit - before.growth(now);
     bool const stayed = dot(moved, moved) < mul_rn(left, left) && left > 0;
     if (!stayed) order.ask_to_rebuild();
   }
@@ -162,30 +162,30 @@ struct build_lists {
 
  protected:
   using ordered = sorted_particles<S, Effects>;
-  static constexpr std::uint32_t room = ordered::listed;
+  static constexpr std::uint32_t capacity = ordered::listed;
 
   COLLIDE_HD_INLINE void list(std::uint32_t i) const {
-    std::uint32_t places[room], found = 0;
-    std::uint8_t rows[room];
+    std::uint32_t places[capacity], found = 0;
+    std::uint8_t rows[capacity];
     order.for_each_overlapping(i, skin, [&](std::uint32_t k, int row) {
-      if (found < room) {
+      if (found < capacity) {
         places[found] = k;
         rows[found] = static_cast<std::uint8_t>(row);
       }
       ++found;
     });
-    if (found > room) {
+    if (found > capacity) {
       list_run(i, found);
       return;
     }
-    first_neighbours<room> near;
+    first_neighbours<capacity> near;
     COLLIDE_NO_UNROLL
     for (std::uint32_t n = 0; n < found; ++n) {
       if (order.is_in_row(places[n], i, rows[n])) near.add(order.number_at(places[n]), places[n]);
     }
     COLLIDE_NO_UNROLL
     for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];
-    if (near.size < room) order.list(near.size, i) = i;
+    if (near.size < capacity) order.list(near.size, i) = i;
     mark_border(i, near.places, near.size);
     if constexpr (ordered::has_memory) {
       std::uint32_t touching = 0;
@@ -201,13 +201,13 @@ struct build_lists {
   COLLIDE_HD_INLINE void mark_border([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t const* places,
                                      [[maybe_unused]] std::uint32_t size) const {
     if constexpr (ordered::on_ranks) {
-      bool meets = size > room;
+      bool meets = size > capacity;
       for (std::uint32_t n = 0; n < size && !meets; ++n) meets = order.is_of_another(order.numbers[places[n]]);
       meets = meets && !order.is_of_another(order.numbers[i]);
       order.is_at_border[i] = meets ? 1 : 0;
       if (!meets) return;
       std::uint32_t const k = fetch_add(&order.header->at_border, 1u);
-      if (k < order.border_room) order.border[k] = i;
+      if (k < order.border_capacity) order.border[k] = i;
     }
   }
 

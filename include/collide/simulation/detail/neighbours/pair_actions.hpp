@@ -76,21 +76,21 @@ struct meet_once {
   meeting what;
 
   void operator()(std::size_t begin, std::size_t end) const {
-    touching_pair found[room];
+    touching_pair found[capacity];
     std::uint32_t size = 0;
-    std::uint32_t const most = items.firsts[order.header->count] - 1;
+    std::uint32_t const last_item = items.firsts[order.header->count] - 1;
     for (std::size_t i = begin; i < end; ++i) {
       packed_sphere<S> const own = order.spheres[i];
       std::uint32_t const last = items.firsts[i + 1];
       for (std::uint32_t k = items.firsts[i]; k < last; ++k) {
         std::uint32_t const other = items.others[k];
-        prefetch(order.spheres + items.others[min(k + 16, most)]);
+        prefetch(order.spheres + items.others[min(k + 16, last_item)]);
         bool const overlap = order.within_skin(own, order.spheres[other], S(0));
         auto const was = static_cast<std::uint8_t>(items.marks[k] & items.remembers);
         found[size] = {static_cast<std::uint32_t>(i), other, k};
         items.marks[k] = static_cast<std::uint8_t>(was | (overlap ? items.meets : 0));
         size += overlap || was != 0;
-        if (size == room) {
+        if (size == capacity) {
           meet(found, size);
           size = 0;
         }
@@ -102,7 +102,7 @@ struct meet_once {
  private:
   using interaction = typename ordered::interaction;
   using P = pack_of<S>;
-  static constexpr std::uint32_t room = 1024;  ///< for pairs that touch
+  static constexpr std::uint32_t capacity = 1024;  ///< for pairs that touch
 
   struct touching_pair {
     std::uint32_t place, other, item;
@@ -116,8 +116,8 @@ struct meet_once {
         meet_alike(effect, found, size, 0);
       } else {
         std::uint32_t ends[kinds + 1] = {};
-        std::uint16_t kind_of[room];
-        touching_pair sorted[room];
+        std::uint16_t kind_of[capacity];
+        touching_pair sorted[capacity];
         for (std::uint32_t k = 0; k < size; ++k) {
           interaction a = order.load(found[k].place), b = order.load(found[k].other);
           kind_of[k] = static_cast<std::uint16_t>(effect.made_of.pair_of(seen(effect, a), seen(effect, b)));
@@ -314,7 +314,7 @@ class pair_actions {
     });
     firsts[count] = 0;
     exclusive_scan(space, firsts, count + 1);
-    make_room(space, firsts[count]);
+    ensure_capacity(space, firsts[count]);
     space.for_each(count, [&](std::size_t i) {
       std::uint32_t item = firsts[i];
       for_each_place(o, i, [&](std::uint32_t& place) {
@@ -470,10 +470,10 @@ class pair_actions {
   }
 
   template <class Space>
-  void make_room(Space const& space, std::size_t n) {
-    std::size_t const room = n + n / 8 + 64;
-    if (now_.others.capacity() < n) now_.reserve(space.resource(), room);
-    if (actions_.capacity() < n) actions_.reserve(space.resource(), room);
+  void ensure_capacity(Space const& space, std::size_t n) {
+    std::size_t const capacity = n + n / 8 + 64;
+    if (now_.others.capacity() < n) now_.reserve(space.resource(), capacity);
+    if (actions_.capacity() < n) actions_.reserve(space.resource(), capacity);
   }
 
   kept now_, before_;

@@ -113,7 +113,7 @@ struct sorted_particles {
   std::uint32_t* places_of_copies;  ///< by those numbers
   std::uint8_t* is_at_border;       ///< by places: not 0 if one on the list is such a copy, or there is no list
   std::uint32_t* border;            ///< those places, as many as there is room for
-  std::size_t border_room;
+  std::size_t border_capacity;
 
   COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
 

@@ -75,8 +75,8 @@ class verlet_list {
   template <class Space>
   void clear(Space& space, std::size_t n, radius_range<S> const& radii, std::size_t copies = 0,
              std::size_t border = 0) {
-    make_room(places_of_copies_, space.resource(), copies);
-    make_room(border_, space.resource(), border);
+    ensure_capacity(places_of_copies_, space.resource(), copies);
+    ensure_capacity(border_, space.resource(), border);
     space.fill(header_.data(), 0, sizeof(state_of_lists));
     inside_is_done_ = false;
     fit(space, n, radii);
@@ -143,13 +143,13 @@ class verlet_list {
     if (!(around == around_)) space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
     around_ = around;
     listed_ = state.size;
-    space.for_each(state.size, update_and_check_skin<S, Effects>{state, order_of(state), most_moved()});
+    space.for_each(state.size, update_and_check_skin<S, Effects>{state, order_of(state), largest_move()});
   }
   /// After `check`: the same for the copies.
   template <class Space>
   void check_copies(Space const& space, state_type const& state) {
     if constexpr (order::on_ranks)
-      space.for_each(state.size - state.own, update_copies<S, Effects>{{state, order_of(state), most_moved()}});
+      space.for_each(state.size - state.own, update_copies<S, Effects>{{state, order_of(state), largest_move()}});
   }
   /// After both: true if lists are to be made anew. If not, the next `renew` has nothing to do. Waits.
   template <class Space>
@@ -351,7 +351,7 @@ class verlet_list {
     std::sort(along_.begin(), along_.end(), [&](auto a, auto b) { return o.curve[a] < o.curve[b]; });
     for (std::uint32_t const b : along_) scan_cells{o.ends, &o.header->count}(b);
   }
-  S most_moved() const { return S(0.495) * skin_; }  ///< half of the skin, but for rounding
+  S largest_move() const { return S(0.495) * skin_; }  ///< half of the skin, but for rounding
 
   typename Effects::space_type around_{};
   cells cells_{};

@@ -76,7 +76,7 @@ struct contact_history : remaining_motion<S, IsSwept> {
   stored_vec3<S> arrival_velocity, start;  ///< before the contacts at this place, and where it led from
   std::uint8_t contact_count;              ///< contacts so far in this step
   std::uint8_t contacts_here;              ///< those of them at this place
-  bool is_held;                            ///< it had no velocity relative to the surface after the last contact
+  bool is_at_rest;                         ///< it had no velocity relative to the surface after the last contact
 
   COLLIDE_HD_INLINE auto shape() const {
     sphere<S> const here{centre.get(), radius};

@@ -22,8 +22,8 @@ template <class S>
 COLLIDE_HD_INLINE S swept_radius(S r, vec3<S> const& centre, vec3<S> const& displacement, S largest) {
   S const reach =
       collide::detail::max_component<S>(absolute(centre)) + collide::detail::max_component<S>(absolute(displacement));
-  S const least = 4 * std::numeric_limits<S>::epsilon() * reach;
-  return r >= 0 && r < largest ? max(r, min(least, largest)) : r;
+  S const smallest = 4 * std::numeric_limits<S>::epsilon() * reach;
+  return r >= 0 && r < largest ? max(r, min(smallest, largest)) : r;
 }
 
 /// Contact response: the work of a block for particles that may touch the mesh.
@@ -49,14 +49,14 @@ struct contact_response {
   /// Resolves the contacts of `n` particles, at most the scratch memory's `batch_size`: key_of(j) for all j < n says
   /// which they are.
   template <class Block, class NumberOf>
-  COLLIDE_HD void resolve(Block& block, scratch<Block>& s, std::uint32_t n, NumberOf const& key_of) const {
+  COLLIDE_HD void resolve(Block& block, scratch<Block>& s, std::uint32_t n, NumberOf const& number_of) const {
     auto const for_each_particle = [&](auto const& f) {
       block.for_each_thread([&](int thread_rank) {
         for (auto j = static_cast<std::uint32_t>(thread_rank); j < n; j += Block::num_threads) f(s.particles[j], j);
       });
     };
     for_each_particle([&](active& a, std::uint32_t j) {
-      begin(a, key_of(j));
+      begin(a, number_of(j));
       if (j != 0) return;
       search.reset(s);
       s.active_count = 0;
@@ -87,7 +87,7 @@ struct contact_response {
     a.radius = p.the_radius;
     a.place(p[position{}], p[velocity{}] * context.dt);
     if constexpr (is_swept) {
-      a.radius = swept_radius(p.the_radius, p[position{}], a.motion(), context.least_radius);
+      a.radius = swept_radius(p.the_radius, p[position{}], a.motion(), context.min_radius);
       a.remaining_time = context.dt;
     }
     a.contact_count = a.contacts_here = 0;
@@ -144,7 +144,7 @@ struct contact_response {
     context.effects.on_mesh_contact(p, c, context.dt);
     a.offset_start(c, min(depth_at_start, S(depth - c.depth)));
     surface.record_contact(a, c);
-    a.is_held = p[velocity{}] == vec3<S>(S(0), S(0), S(0));
+    a.is_at_rest = p[velocity{}] == vec3<S>(S(0), S(0), S(0));
     surface.to_world_frame(p);
     if constexpr (effects_type::any_mesh_impulse) {
       vec3<S> const& v = p[velocity{}];
@@ -205,7 +205,7 @@ struct contact_response {
   }
 
   COLLIDE_HD_INLINE void end_step(colliding& p, active const& a) const {
-    end_motion(context, p, a.contact_count > 0 && a.is_held);
+    end_motion(context, p, a.contact_count > 0 && a.is_at_rest);
     if constexpr (!effects_type::ends_after_meeting) end_particle(context, p);
   }
 };

@@ -100,11 +100,11 @@ struct contact_scratch : span_frames<HasBodies> {
 
   /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block, but fewer than threads, and
   /// than bytes can count. The rest is for what else a step keeps there.
-  static constexpr std::uint32_t room =
+  static constexpr std::uint32_t capacity =
       static_cast<std::uint32_t>((47 * 1024 - sizeof(contact_queues<Block>) - bytes_of_frames) / bytes_per_particle);
-  static constexpr std::uint32_t batch_size = Block::num_threads == 1     ? Block::items
-                                              : room < Block::num_threads ? room
-                                                                          : Block::num_threads - 1;
+  static constexpr std::uint32_t batch_size = Block::num_threads == 1         ? Block::items
+                                              : capacity < Block::num_threads ? capacity
+                                                                              : Block::num_threads - 1;
 
   particle_type particles[batch_size];
   std::uint8_t particle_of_span[batch_size];

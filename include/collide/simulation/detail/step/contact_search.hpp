@@ -99,12 +99,12 @@ struct contact_search {
   /// Lists the next span of candidates of each active particle. `before` is what `s.spans` was before.
   template <class Block>
   COLLIDE_HD_INLINE void list_spans(Block& block, scratch<Block>& s, std::uint32_t n, span_counts const& before) const {
-    constexpr std::uint32_t most = (1u << 31) / scratch<Block>::batch_size;
+    constexpr std::uint32_t max_count = (1u << 31) / scratch<Block>::batch_size;
     block.for_each_thread([&](int thread_rank) {
       for (auto j = static_cast<std::uint32_t>(thread_rank); j < n; j += Block::num_threads) {
         active& a = s.particles[j];
         candidate_range range{};
-        if (!a.is_active || !next(a, most, range)) continue;
+        if (!a.is_active || !next(a, max_count, range)) continue;
         if (!a.cursor.at_end()) block.add(s.spans.unfinished, 1);
         std::uint32_t const i = block.add(s.spans.spans, 1) - before.spans;
         s.particle_of_span[i] = static_cast<std::uint8_t>(j);
@@ -117,11 +117,11 @@ struct contact_search {
     });
   }
 
-  COLLIDE_HD_INLINE bool next(active& a, std::uint32_t most, candidate_range& range) const {
+  COLLIDE_HD_INLINE bool next(active& a, std::uint32_t max_count, candidate_range& range) const {
     if constexpr (has_bodies) {
-      return triangles.next(a.shape(), part_done(triangles.mesh, a), a.cursor, most, range);
+      return triangles.next(a.shape(), fraction_done(triangles.mesh, a), a.cursor, max_count, range);
     } else {
-      return triangles.next(a.shape(), a.cursor, most, range);
+      return triangles.next(a.shape(), a.cursor, max_count, range);
     }
   }
 
@@ -134,22 +134,22 @@ struct contact_search {
   COLLIDE_HD_INLINE span span_of(scratch<Block>& s, std::uint32_t i) const {
     active& a = s.particles[s.particle_of_span[i]];
     shape const whole = shape_seen(triangles.mesh, a, s.frame(i));
-    shape part = whole;
-    if constexpr (is_swept && Block::num_threads == 1) clip_to_best(a, part);
+    shape clipped = whole;
+    if constexpr (is_swept && Block::num_threads == 1) clip_to_best(a, clipped);
     return {s.particle_of_span[i],
             a,
             whole,
-            swept_bounding_sphere(part),
+            swept_bounding_sphere(clipped),
             {s.span_items[i], s.span_first[i], 0, s.span_coverage[i]},
             s.frame(i)};
   }
 
   /// A thread alone finds the first contacts first, as it goes along the motion, and hardly looks at what comes later.
-  static COLLIDE_HD_INLINE void clip_to_best(active const& a, shape& part) {
+  static COLLIDE_HD_INLINE void clip_to_best(active const& a, shape& clipped) {
     // times are early by less, or by what the slack of bounding spheres covers; in keys they are rounded
     constexpr S late = S(0x1p-21);
     if (a.best_key == no_contact) return;
-    part.displacement = scaled(part.displacement, min(S(1), time_of_key<S>(a.best_key) + late));
+    clipped.displacement = scaled(clipped.displacement, min(S(1), time_of_key<S>(a.best_key) + late));
   }
 
   /// False if the triangle's box is out of reach. A filtered predicate begins with a test of boxes itself.

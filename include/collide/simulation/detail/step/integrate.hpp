@@ -42,7 +42,7 @@ COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
   }
   S const kick = first_kick<Context>(p);
   if constexpr (Context::effects_type::adheres) {
-    if (is_stuck(p[adhered{}]) && hold_adhered(context, p, kick)) return S(0);
+    if (is_stuck(p[adhered{}]) && carry_stuck(context, p, kick)) return S(0);
   }
   if constexpr (contains<typename Particle::list, held>) p[held{}] = 0;
   return kick;
@@ -63,7 +63,7 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
       using S = typename Context::scalar;
       vec3<S> const before = p[velocity{}];
       p[velocity{}] = rounded_to<S>(velocity_at(f.moving, f.now, p[position{}].template cast<double>()));
-      if (p.number < context.state.size) record_held(context, p, p[velocity{}] - before);
+      if (p.number < context.state.size) record_stuck(context, p, p[velocity{}] - before);
     }
   }
   if constexpr (contains<typename Particle::list, held>) {
@@ -95,7 +95,7 @@ COLLIDE_HD_INLINE void end_particle(Context const& context, Particle& p) {
       if (by == 2) {
         Particle next = p;
         context.effects.accelerate(next, Context::kick_after * context.dt);
-        record_held(context, p, p[velocity{}] - next[velocity{}]);
+        record_stuck(context, p, p[velocity{}] - next[velocity{}]);
         if constexpr (contains<typename Particle::list, pair_angular_acceleration>)
           p[angular_velocity{}] = next[angular_velocity{}];
       }
@@ -199,7 +199,7 @@ struct integration {
   /// True if `occupancy` alone tell whether a particle can touch a triangle.
   COLLIDE_HD_INLINE bool is_single_cell() const {
     return has_one_radius && !(has_bodies && is_swept) &&
-           context.triangles.has_single_cell_lookup(max(context.state.common_radius, context.least_radius));
+           context.triangles.has_single_cell_lookup(max(context.state.common_radius, context.min_radius));
   }
 
   /// Sets near[k] for those of some particles that may touch the mesh.
@@ -336,7 +336,7 @@ struct integration {
   /// The sphere as the narrow phase takes it.
   COLLIDE_HD_INLINE auto shape_of(integrated const& p) const {
     if constexpr (is_swept) {
-      S const radius = p.the_radius >= 0 ? max(p.the_radius, context.least_radius) : p.the_radius;
+      S const radius = p.the_radius >= 0 ? max(p.the_radius, context.min_radius) : p.the_radius;
       return moving_sphere<S>{{p[position{}], radius}, p[velocity{}] * context.dt};
     } else {
       return sphere<S>{p[position{}], p.the_radius};

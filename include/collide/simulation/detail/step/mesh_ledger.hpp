@@ -56,11 +56,11 @@ COLLIDE_HD_INLINE void record_impulse(Context const& context, Particle& p,
 /// and of what would turn it, each has a part as large as what it gave. What lies on others that sleep is held by these
 /// but for a rest, which goes to what rests, unless effects may hold it that know no mesh.
 template <class Context, class Particle>
-COLLIDE_HD_INLINE void record_sleeping(Context const& context, Particle& p, typename Context::scalar part) {
+COLLIDE_HD_INLINE void record_sleeping(Context const& context, Particle& p, typename Context::scalar fraction) {
   using S = typename Context::scalar;
-  if (part == 0) return;
+  if (fraction == 0) return;
   vec3<S> const none(S(0), S(0), S(0));
-  S const time = part * context.dt;
+  S const time = fraction * context.dt;
   Particle next = p;
   context.effects.accelerate(next, time);
   vec3<S> const change = p[velocity{}] - next[velocity{}];
@@ -95,8 +95,8 @@ COLLIDE_HD_INLINE void record_sleeping(Context const& context, Particle& p, type
 template <class Particle>
 COLLIDE_HD_INLINE int frame_ridden([[maybe_unused]] Particle const& p) {
   if constexpr (contains<typename Particle::list, adhered>) {
-    int const held = p[adhered{}];
-    return held > 1 && is_stuck(p[adhered{}]) ? held - 1 : 0;
+    int const stuck_to = p[adhered{}];
+    return stuck_to > 1 && is_stuck(p[adhered{}]) ? stuck_to - 1 : 0;
   } else {
     return 0;
   }
@@ -133,25 +133,25 @@ COLLIDE_HD_INLINE ridden_surface surface_ridden([[maybe_unused]] Context const& 
   return s;
 }
 
-/// Tells the effects what the mesh gives to a particle that sticks to it; `way`: on which it is carried, where that is
+/// Tells the effects what the mesh gives to a particle that sticks to it; `path`: on which it is carried, where that is
 /// not along its velocity.
 template <class Context, class Particle>
-COLLIDE_HD_INLINE void record_held(Context const& context, Particle& p, vec3<typename Context::scalar> const& change,
-                                   vec3<typename Context::scalar> const& way) {
+COLLIDE_HD_INLINE void record_stuck(Context const& context, Particle& p, vec3<typename Context::scalar> const& change,
+                                    vec3<typename Context::scalar> const& path) {
   using S = typename Context::scalar;
   vec3<S> const none(S(0), S(0), S(0));
-  record_impulse(context, p, {change, none, p[position{}], way, p[velocity{}], no_id, body_of_frame(frame_ridden(p))});
+  record_impulse(context, p, {change, none, p[position{}], path, p[velocity{}], no_id, body_of_frame(frame_ridden(p))});
 }
 template <class Context, class Particle>
-COLLIDE_HD_INLINE void record_held(Context const& context, Particle& p, vec3<typename Context::scalar> const& change) {
+COLLIDE_HD_INLINE void record_stuck(Context const& context, Particle& p, vec3<typename Context::scalar> const& change) {
   using S = typename Context::scalar;
-  record_held(context, p, change, vec3<S>(S(0), S(0), S(0)));
+  record_stuck(context, p, change, vec3<S>(S(0), S(0), S(0)));
 }
 
 /// Lets the mesh hold a particle that sticks to it, against what would change its velocity in the step, of which it
 /// gets a part at first. False if that pulls it off: then it is free.
 template <class Context, class Particle>
-COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p, typename Context::scalar first_part) {
+COLLIDE_HD_INLINE bool carry_stuck(Context const& context, Particle& p, typename Context::scalar first_fraction) {
   using S = typename Context::scalar;
   auto& v = p[velocity{}];
   ridden_surface const surface = surface_ridden(context, p[position{}], frame_ridden(p));
@@ -163,14 +163,14 @@ COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p, typenam
     p[adhered{}] = 0;
     return false;
   }
-  vec3<double> const given = surface.drift - own - scaled(by, static_cast<double>(first_part));
+  vec3<double> const given = surface.drift - own - scaled(by, static_cast<double>(first_fraction));
   v = rounded_to<S>(surface.drift);
   if constexpr (contains<typename Particle::list, pair_angular_acceleration>)
-    p[angular_velocity{}] += p[pair_angular_acceleration{}] * (first_part * context.dt);
-  vec3<S> way(S(0), S(0), S(0));
-  if constexpr (!Context::is_swept) way = rounded_to<S>(surface.to) - p[position{}];
+    p[angular_velocity{}] += p[pair_angular_acceleration{}] * (first_fraction * context.dt);
+  vec3<S> path(S(0), S(0), S(0));
+  if constexpr (!Context::is_swept) path = rounded_to<S>(surface.to) - p[position{}];
   mark_contact(p);
-  if (p.number < context.state.size) record_held(context, p, rounded_to<S>(given), way);  // behind are places of none
+  if (p.number < context.state.size) record_stuck(context, p, rounded_to<S>(given), path);  // behind are places of none
   if constexpr (contains<typename Particle::list, held>) p[held{}] = 2;
   return true;
 }

@@ -33,8 +33,8 @@ struct motion_on_body {
   /// The rounding of a particle that goes with the body: of its velocity, and of its centre, times the rotation.
   template <class History>
   COLLIDE_HD_INLINE S rounding(History const& h) const {
-    vec3<S> const here = h.centre.get(), way = h.motion();
-    return 4 * std::numeric_limits<S>::epsilon() * (sum_of_sizes(way) + turn * sum_of_sizes(here));
+    vec3<S> const here = h.centre.get(), motion = h.motion();
+    return 4 * std::numeric_limits<S>::epsilon() * (sum_of_sizes(motion) + turn * sum_of_sizes(here));
   }
   /// The body of a contact may have turned since.
   template <class History>
@@ -57,7 +57,7 @@ struct motion_on_body {
 
 /// The part of the step that is over for a particle, and that which is over at a time of the rest.
 template <class S, class Active>
-COLLIDE_HD_INLINE double part_done(moving_mesh<S> const& mesh, Active const& a, S time = 0) {
+COLLIDE_HD_INLINE double fraction_done(moving_mesh<S> const& mesh, Active const& a, S time = 0) {
   if constexpr (Active::is_swept) {
     S const left = a.remaining_time - mul_rn(a.remaining_time, time);
     return mesh.dt != 0 ? 1 - div_rn(static_cast<double>(left), static_cast<double>(mesh.dt)) : 0.0;
@@ -72,12 +72,12 @@ COLLIDE_HD_INLINE int frame_of(moving_mesh<S> const& mesh, id triangle) {
 }
 template <class S, class Active>
 COLLIDE_HD_INLINE auto shape_seen(moving_mesh<S> const& mesh, Active const& a, int frame) {
-  return mesh.seen_from(frame, a.shape(), part_done(mesh, a));
+  return mesh.seen_from(frame, a.shape(), fraction_done(mesh, a));
 }
 /// As the body lies at a part of the step.
 template <class S, class Active, class Shape>
 COLLIDE_HD_INLINE auto motion_seen([[maybe_unused]] moving_mesh<S> const& mesh, Active const&, int frame,
-                                   [[maybe_unused]] Shape const& whole, [[maybe_unused]] double part) {
+                                   [[maybe_unused]] Shape const& whole, [[maybe_unused]] double fraction) {
   vec3<S> const none(S(0), S(0), S(0));
   motion_on_body<S, Active::is_swept> m{none, none, none, none, none, frame, S(0)};
   if constexpr (Active::is_swept) {
@@ -85,22 +85,22 @@ COLLIDE_HD_INLINE auto motion_seen([[maybe_unused]] moving_mesh<S> const& mesh, 
     if (frame == 0) return m;
     vec3<double> const d = whole.displacement.template cast<double>();
     m.turn = sum_of_sizes(rounded_to<S>(vector_of(mesh.frames[frame].moving.angular))) * mesh.dt;
-    m.displacement = rounded_to<S>(mesh.pose_at(frame, part).rotated(d));
+    m.displacement = rounded_to<S>(mesh.pose_at(frame, fraction).rotated(d));
   }
   return m;
 }
 template <class S, class Active, class Shape>
 COLLIDE_HD_INLINE auto motion_seen(moving_mesh<S> const& mesh, Active const& a, int frame, Shape const& whole) {
-  return motion_seen(mesh, a, frame, whole, part_done(mesh, a));
+  return motion_seen(mesh, a, frame, whole, fraction_done(mesh, a));
 }
 template <class S, class Active, class Shape>
 COLLIDE_HD_INLINE auto contact_in_world(moving_mesh<S> const& mesh, Active const& a, Shape const& whole, S time,
                                         contact<S>& c) {
   int const frame = mesh.frame_of(c.triangle);
-  double const part = part_done(mesh, a, time);
-  auto m = motion_seen(mesh, a, frame, whole, part);
+  double const fraction = fraction_done(mesh, a, time);
+  auto m = motion_seen(mesh, a, frame, whole, fraction);
   m.own_point = c.point;
-  mesh.to_world(c, frame, part);
+  mesh.to_world(c, frame, fraction);
   return m;
 }
 
@@ -184,12 +184,12 @@ struct surface_of_body {
 };
 
 /// The surface of a contact of a particle, which is then at `here`: in the frame of the body where that is swept, and
-/// `part` of the step is over. `Turns`: the particle may turn with the body, as it
+/// `fraction` of the step is over. `Turns`: the particle may turn with the body, as it
 /// spins or sticks.
 template <bool Turns, class Active, class S>
 COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S> const& mesh, contact<S> const& c,
                                                                   vec3<S> const& here, vec3<S> const& centre,
-                                                                  double part) {
+                                                                  double fraction) {
   using vector = vec3<double>;
   vector const none(0, 0, 0);
   surface_of_body<S, Active::is_swept> s{};
@@ -207,7 +207,7 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
   body_frame<S> const& f = mesh.frames[s.frame];
   s.before = f.before;
   s.now = f.now;
-  s.at = mesh.pose_at(s.frame, part);
+  s.at = mesh.pose_at(s.frame, fraction);
   vector const x = centre.template cast<double>(), point = c.point.template cast<double>();
   vector const lever_velocity = cross(vector_of(f.moving.angular), vector(point - x));
   vector const local = s.at.to_local(x);
@@ -215,7 +215,7 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
   for (int k = 0; k < 3; ++k) s.angular[k] = static_cast<S>(f.moving.angular[k]);
   if (Active::is_swept && mesh.dt != 0) {
     // of a short rest of the step, rounding would leave nothing
-    double const from = min(part, 1 - 0x1p-10), time = mul_rn(1 - from, static_cast<double>(mesh.dt));
+    double const from = min(fraction, 1 - 0x1p-10), time = mul_rn(1 - from, static_cast<double>(mesh.dt));
     vector const own = here.template cast<double>();
     vector const shift = f.now.to_world(own) - mesh.pose_at(s.frame, from).to_world(own);
     s.entrainment_velocity = vector(div_rn(shift.x(), time), div_rn(shift.y(), time), div_rn(shift.z(), time));
@@ -237,14 +237,14 @@ COLLIDE_HD_INLINE touch<S, surface_of_body<S, Active::is_swept>, motion_on_body<
     moving_mesh<S> const& mesh, Active const& a, contact<S> const& c, S time) {
   constexpr bool is_swept = Active::is_swept;
   int const frame = mesh.frame_of(c.triangle);
-  double const part = part_done(mesh, a, time);
+  double const fraction = fraction_done(mesh, a, time);
   auto const whole = shape_seen(mesh, a, frame);
   sphere<S> here = sphere_at(whole, time);
   vec3<S> const own = here.centre, centre = a.shape().centre;
-  here.centre = is_swept ? mesh.in_world(frame, own, part) : centre;
-  auto motion = motion_seen(mesh, a, frame, whole, part);
-  if constexpr (is_swept) motion.drift = mesh.in_world(frame, whole.centre, part) - centre;
-  return {here, surface_of<Turns, Active>(mesh, c, own, here.centre, part), motion};
+  here.centre = is_swept ? mesh.in_world(frame, own, fraction) : centre;
+  auto motion = motion_seen(mesh, a, frame, whole, fraction);
+  if constexpr (is_swept) motion.drift = mesh.in_world(frame, whole.centre, fraction) - centre;
+  return {here, surface_of<Turns, Active>(mesh, c, own, here.centre, fraction), motion};
 }
 
 }  // namespace collide::detail

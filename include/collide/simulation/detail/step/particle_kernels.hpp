@@ -71,11 +71,11 @@ struct wake_where_others_went {
   State state;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    double room = static_cast<double>(state.size - state.placed);
+    double capacity = static_cast<double>(state.size - state.placed);
     if constexpr (contains<typename State::list, global_number>)
-      room = static_cast<double>(state.all_size - state.all_placed);
-    if (state.time[clock_made_now] == 0 || room <= 0) return;
-    if (state.time[clock_made] > room) state.at(slow_steps{})[i] = 0;
+      capacity = static_cast<double>(state.all_size - state.all_placed);
+    if (state.time[clock_made_now] == 0 || capacity <= 0) return;
+    if (state.time[clock_made] > capacity) state.at(slow_steps{})[i] = 0;
   }
 };
 
@@ -135,22 +135,22 @@ struct end_particles {
 
 /// Kernel functor of `for_each` over particles: frees those that stick to the mesh where it no longer is.
 template <class State, class Triangles>
-struct release_adhered {
+struct release_stuck {
   State state;
   Triangles triangles;
   bool are_driven;  ///< bodies, which are not where they will be
   std::size_t bodies;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::uint8_t& held = state.at(adhered{})[i];
-    if (are_driven && is_stuck(held) && std::size_t{held} > bodies + 1) held = 0;  // there is no such body any more
-    if (held == 0 || (are_driven && held > 1)) return;
+    std::uint8_t& stuck = state.at(adhered{})[i];
+    if (are_driven && is_stuck(stuck) && std::size_t{stuck} > bodies + 1) stuck = 0;  // there is no such body any more
+    if (stuck == 0 || (are_driven && stuck > 1)) return;
     auto const* const x = state.at(position{}) + 3 * i;
     using S = std::decay_t<decltype(*x)>;
     vec3<S> const centre(x[0], x[1], x[2]);
     S const r = state.radius_at(i);
     std::uint8_t const found = find(sphere<S>{centre, r + 2 * (contact_tolerance<S> * r + rounding_at(centre))});
-    if (held != came_too_fast || found == 0) held = found;
+    if (stuck != came_too_fast || found == 0) stuck = found;
   }
 
  private:
@@ -176,11 +176,11 @@ struct release_adhered {
   }
   template <class S, class Cursor>
   COLLIDE_HD static bool next(Triangles const& near, sphere<S> const& s, Cursor& cursor, candidate_range& range) {
-    constexpr std::uint32_t most = 1u << 30;
+    constexpr std::uint32_t max_count = 1u << 30;
     if constexpr (has_moving_mesh<Triangles>) {
-      return near.next(s, 1, cursor, most, range);
+      return near.next(s, 1, cursor, max_count, range);
     } else {
-      return near.next(s, cursor, most, range);
+      return near.next(s, cursor, max_count, range);
     }
   }
   template <class S>
@@ -195,7 +195,7 @@ struct release_adhered {
   }
 };
 template <class State, class Triangles>
-release_adhered(State, Triangles, bool, std::size_t) -> release_adhered<State, Triangles>;
+release_stuck(State, Triangles, bool, std::size_t) -> release_stuck<State, Triangles>;
 
 template <class S, class All, class Effects>
 init_particles<S, All> initial(particle_state<S, All> const& state, sphere_view<S> const& spheres, S const* velocities,
@@ -211,7 +211,7 @@ struct advance_time {
     auto const begun = static_cast<double>(begin_in_step(time, due));
     time[0] += dt;
     time[clock_made] += begun;
-    time[clock_part] += due - begun;
+    time[clock_fraction] += due - begun;
     time[clock_made_now] = begun;
   }
 };

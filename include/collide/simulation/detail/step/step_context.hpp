@@ -33,7 +33,7 @@ struct step_context {
   id* overflow;  ///< room for the numbers of all particles and their padding; only where threads share a block
   S dt;
   bool reverse_order;  ///< the last particles first: what the step before has written last is still in the caches
-  S least_radius;      ///< swept particles are searched for as if they were at least so large
+  S min_radius;        ///< swept particles are searched for as if they were at least so large
 };
 
 }  // namespace collide::detail

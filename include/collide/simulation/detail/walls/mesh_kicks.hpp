@@ -29,16 +29,16 @@ struct kicks_by_mesh {
 };
 template <class S, class Effects>
 struct kicks_by_mesh<S, Effects, true> {
-  static constexpr int most = mesh_kicks::contacts;
+  static constexpr int capacity = mesh_kicks::contacts;
 
-  several<S, 6 * most> numbers;
-  several<id, 2 * most> by;
+  several<S, 6 * capacity> numbers;
+  several<id, 2 * capacity> by;
   int count = 0;
 
   /// A contact that has given so much; the last of more than there is room for has the impulses of all others.
   COLLIDE_HD_INLINE void add(mesh_impulse<S> const& given, S per_time) {
-    int const k = min(count, most - 1);
-    if (count < most) by.of[2 * k] = given.triangle, by.of[2 * k + 1] = given.body, ++count;
+    int const k = min(count, capacity - 1);
+    if (count < capacity) by.of[2 * k] = given.triangle, by.of[2 * k + 1] = given.body, ++count;
     for (int c = 0; c < 3; ++c) {
       numbers.of[6 * k + c] += given.change[c] * per_time;
       numbers.of[6 * k + 3 + c] += given.spin_change[c] * per_time;
@@ -48,9 +48,9 @@ struct kicks_by_mesh<S, Effects, true> {
   COLLIDE_HD_INLINE void store(State const& state, std::size_t i) const {
     if (count == 0) return;
     for (int k = 0; k < 6 * count; ++k)
-      state.at(mesh_kicks{})[i * std::size_t(6 * most) + std::size_t(k)] = numbers.of[k];
+      state.at(mesh_kicks{})[i * std::size_t(6 * capacity) + std::size_t(k)] = numbers.of[k];
     for (int k = 0; k < 2 * count; ++k)
-      state.at(mesh_kicks_by{})[i * std::size_t(2 * most) + std::size_t(k)] = by.of[k];
+      state.at(mesh_kicks_by{})[i * std::size_t(2 * capacity) + std::size_t(k)] = by.of[k];
     state.at(mesh_kick_count{})[i] = static_cast<std::uint8_t>(count);
   }
 };

@@ -96,7 +96,7 @@ struct list_pressing {
 
 /// Memory of a device for particles that overlap more triangles than a list has room for.
 struct overlap_pool {
-  static constexpr std::size_t least = 65536;  ///< items, of a scene of few particles
+  static constexpr std::size_t min_items = 65536;  ///< items, of a scene of few particles
 
   overlap_item* items;
   std::uint32_t capacity;
@@ -143,7 +143,7 @@ struct press_on_mesh {
  protected:
   using integrated = particle<S, typename Effects::overlap_reads>;
   using values_type = contact_values<S, remembered>;
-  static constexpr int most = surface_memory_ref<S, remembered>::room;
+  static constexpr int capacity = surface_memory_ref<S, remembered>::max_contacts;
 
   COLLIDE_HD_INLINE void press_with(std::size_t i) const {
     S const* const x = state.at(position{}) + 3 * i;
@@ -246,14 +246,14 @@ struct press_on_mesh {
     integrated p;
     state.load(p, i);
     integrated const self = p;
-    vec3<S> normals[most];
-    id bodies[most];
-    values_type values[most] = {};
+    vec3<S> normals[capacity];
+    id bodies[capacity];
+    values_type values[capacity] = {};
     kicks_by_mesh<S, Effects> kicks;
     S const elapsed = what == meeting::in_step || before != 0 ? dt : S(0);
     int kept = 0;
     for_each_contact(open, i, self, near, before, [&](mesh_overlap<S> const& o, values_type& own) {
-      if (!meet(p, self, o, own, elapsed, kicks) || kept == most) return;
+      if (!meet(p, self, o, own, elapsed, kicks) || kept == capacity) return;
       normals[kept] = o.normal;
       bodies[kept] = o.body;
       values[kept++] = own;
@@ -301,9 +301,9 @@ struct press_on_mesh {
       if constexpr (Effects::keeps_mesh_kicks) kicks.add(given, 1 / dt);
       if (what != meeting::in_step) return goes_on;
       keep_support(*this, p, given);
-      constexpr S part = Effects::keeps_mesh_kicks ? S(Effects::integrator::kick_after) : S(1);
-      given.change *= part;
-      given.spin_change *= part;
+      constexpr S fraction = Effects::keeps_mesh_kicks ? S(Effects::integrator::kick_after) : S(1);
+      given.change *= fraction;
+      given.spin_change *= fraction;
       effects.on_mesh_impulse(p, given, dt);
     }
     return goes_on;

@@ -86,7 +86,7 @@ struct overlap_item {
 /// caller has. `Corners` is a function: the corners of an item's triangle, relative to the centre.
 class overlap_list {
  public:
-  static constexpr std::uint32_t room = 16;  ///< of the list itself
+  static constexpr std::uint32_t capacity = 16;  ///< of the list itself
 
   std::uint32_t size = 0;
   std::uint32_t added = 0;  ///< with those for which there was no room, and those that were added before
@@ -109,8 +109,8 @@ class overlap_list {
     while (at > 0 && comes_before(item, own_[at - 1])) --at;
     if (at > 0 && own_[at - 1].triangle == item.triangle) return;
     ++added;
-    if (at == room) return;
-    if (size < room) ++size;
+    if (at == capacity) return;
+    if (size < capacity) ++size;
     COLLIDE_NO_UNROLL
     for (std::uint32_t k = size - 1; k > at; --k) own_[k] = own_[k - 1];
     own_[at] = item;
@@ -222,14 +222,14 @@ class overlap_list {
   COLLIDE_HD void find_pass(std::uint32_t a, std::uint32_t b, overlap_item& item, std::uint32_t other,
                             Corners const& corners) {
     vec3<double> const across = items_[b].nearest - items_[a].nearest;
-    double least = std::numeric_limits<double>::max();  // of part b, along this direction
+    double lowest = std::numeric_limits<double>::max();  // of part b, along this direction
     COLLIDE_NO_UNROLL
     for (std::uint32_t j = b; j < size; ++j) {
       if (items_[j].parent != b) continue;
       local_triangle<double> const t = corners(items_[j]);
-      least = min(least, min(dot(t.a, across), min(dot(t.b, across), dot(t.c, across))));
+      lowest = min(lowest, min(dot(t.a, across), min(dot(t.b, across), dot(t.c, across))));
     }
-    least -= mul_rn(tolerance_, sqrt_rn(dot(across, across)));
+    lowest -= mul_rn(tolerance_, sqrt_rn(dot(across, across)));
     COLLIDE_NO_UNROLL
     for (std::uint32_t i = a; i < size && items_[i].distance < item.pass_distance; ++i) {
       if (items_[i].parent != a) continue;
@@ -238,7 +238,7 @@ class overlap_list {
       for (std::uint32_t k = 0; k < 3; ++k) {
         vec3<double> const p = nearest_on_edge(t, k);
         double const distance = sqrt_rn(dot(p, p));
-        if (!(distance < item.pass_distance) || dot(p, across) < least || !meets(b, p, distance, corners)) continue;
+        if (!(distance < item.pass_distance) || dot(p, across) < lowest || !meets(b, p, distance, corners)) continue;
         item.neighbour = other;
         item.pass = 3 * i + k;
         item.pass_distance = distance;
@@ -316,7 +316,7 @@ class overlap_list {
     }
   }
 
-  overlap_item own_[room];
+  overlap_item own_[capacity];
   overlap_item* items_ = own_;
   double tolerance_;
 };

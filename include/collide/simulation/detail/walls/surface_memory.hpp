@@ -27,7 +27,7 @@ struct surface_record {
 /// The memory of contacts with the mesh, by numbers of particles.
 template <class S, class List>
 struct surface_memory_ref {
-  static constexpr int room = 4;  ///< contacts of a particle that are remembered: the deepest
+  static constexpr int max_contacts = 4;  ///< contacts of a particle that are remembered: the deepest
 
   surface_record<S, List>* records;  ///< contact k of particle i is at k * capacity + i
   std::uint8_t* counts;
@@ -37,7 +37,7 @@ template <class S, class List>
 class surface_memory {
  public:
   void reserve(std::pmr::memory_resource* resource, std::size_t n) {
-    records_.reserve(resource, n * surface_memory_ref<S, List>::room);
+    records_.reserve(resource, n * surface_memory_ref<S, List>::max_contacts);
     counts_.reserve(resource, n);
   }
   template <class Space>
@@ -50,7 +50,7 @@ class surface_memory {
   /// For a checkpoint: the contacts of each of `n` particles; the others are bodies. Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
-    std::vector<surface_record<S, List>> records(room * n);
+    std::vector<surface_record<S, List>> records(max_contacts * n);
     std::vector<std::uint8_t> counts(n);
     if (n != 0) space.copy_to_host(records.data(), records_.data(), records.size());
     if (n != 0) space.copy_to_host(counts.data(), counts_.data(), n);
@@ -70,7 +70,7 @@ class surface_memory {
   template <class Space>
   void restore_contacts(Space& space, saved_contacts<S> const& saved) {
     std::size_t const n = saved.counts.size();
-    std::vector<surface_record<S, List>> records(room * n);
+    std::vector<surface_record<S, List>> records(max_contacts * n);
     std::vector<std::uint8_t> counts;
     std::size_t at = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -90,7 +90,7 @@ class surface_memory {
   static constexpr int width = contact_values<S, List>::width, saved_width = width + 3;
 
  private:
-  static constexpr std::size_t room = surface_memory_ref<S, List>::room;
+  static constexpr std::size_t max_contacts = surface_memory_ref<S, List>::max_contacts;
   buffer<surface_record<S, List>> records_;
   buffer<std::uint8_t> counts_;
 };
