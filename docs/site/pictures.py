@@ -4,7 +4,7 @@ import re
 import struct
 
 
-PHOTOS = ("gallery-", "hits", "8-python")  # all others are sketches and plots, black on white
+SKETCHES = "tutorial-"  # black on white; all others suit dark pages, too
 
 
 def size_of(path):
@@ -30,7 +30,7 @@ def size_of(path):
 
 
 def with_sizes(body, folder, first_at_once=False):
-    """The HTML of a page: each picture with its size, loaded when it comes into view; sketches and plots have a class."""
+    """The HTML of a page: each picture with its size, loaded when it comes into view; sketches have a class."""
     number = 0
 
     def sized(match):
@@ -40,7 +40,7 @@ def with_sizes(body, folder, first_at_once=False):
         number += 1
         size = size_of(path) if path.exists() else None
         lazy = "" if first_at_once and number == 1 else ' loading="lazy"'
-        sketch = "" if name.startswith(PHOTOS) else ' class="sketch"'
+        sketch = ' class="sketch"' if name.startswith(SKETCHES) else ""
         sides = f' width="{size[0]}" height="{size[1]}"' if size else ""
         return match[0].replace("<img ", f"<img{sketch}{lazy}{sides} ", 1)
 

@@ -10,7 +10,7 @@ glossary  Each name in docs/glossary.md and docs/development/words.md is in the 
 members   The tables of members in docs/guide.md have all that the headers have, and nothing else; the pages of docs/api/
           are as scripts/members writes them.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; the README is short; no docstring of include/ begins with
-          a word of FOREIGN_BEGINNINGS, which name nothing. No sentence of a user's page begins with a word of NAMELESS, but a question.
+          a word of FOREIGN_BEGINNINGS, which name nothing. No sentence of a user's page begins with a word of NAMELESS, except a question.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
@@ -63,7 +63,7 @@ FOREIGN = {
 }
 LONGEST = 120
 README_WORDS = 850
-USER_WORDS = 25_000     # all pages of docs/ but api/ and development/
+USER_WORDS = 25_000     # all pages of docs/ except api/ and development/
 CHANGELOG_LINES = 60  # before the first release: its head says what its lines are
 
 # A sentence names its subject: none of these stands at its beginning.
@@ -205,7 +205,7 @@ def members():
 
 
 def english():
-    """Of all pages but the reference, and not of what scripts have written."""
+    """All pages except the reference, without what scripts have written."""
     length = len((ROOT / "README.md").read_text().split())
     if length > README_WORDS:
         yield f"README.md has {length} words: at most {README_WORDS}, so that it is read"

@@ -1,5 +1,5 @@
 """Compares two programs that print `NAME SECONDS HASH` for each scene: results have the same bits, and the first program
-takes no longer than the second, but for a part.
+takes no longer than the second, except for a part.
 
 Usage: compare.py PROGRAM REFERENCE LIMIT
 

@@ -42,7 +42,7 @@ bool hit(triangle const& t, sphere const& s, point const& move);
 /// The same with t in [0, time].
 bool hit_by(triangle const& t, sphere const& s, point const& move, double time);
 
-/// The same with t in [0, time): false if the first contact is at `time` or later. Exact but for contacts that are
+/// The same with t in [0, time): false if the first contact is at `time` or later. Exact except for contacts that are
 /// earlier by less than 2^-300 * time.
 bool hit_before(triangle const& t, sphere const& s, point const& move, double time);
 

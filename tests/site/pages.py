@@ -1,6 +1,6 @@
 """pages.py HTML: the site in this folder is whole.
 
-Every link and picture of a page is there; pictures have a size, and all but the first of the landing page are loaded when they
+Every link and picture of a page is there; pictures have a size, and all except the first of the landing page are loaded when they
 come into view; the landing page has three doors, an icon and tags for other sites; PyPI's theme refers to
 no path of one machine (Debian's does); all together is at most 15 MB.
 """
@@ -47,6 +47,9 @@ def problems(root):
                                  ("menu of versions", r'id="versions"', 1), ("search", r'name="q"', 1)):
         if len(re.findall(pattern, index)) < least:
             yield f"index.html: there is no {what}"
+    shown = re.search(r'property="og:image" content="[^"]*/(_images/[^"]+)"', index)
+    if shown and not (root / shown[1]).exists():
+        yield f"index.html: og:image: {shown[1]} is not there"
     for sheet in root.rglob("*.css"):
         if "url(/" in sheet.read_text() and "prefers-color-scheme" in sheet.read_text():  # PyPI's theme
             yield f"{sheet.relative_to(root)}: a path of one machine"

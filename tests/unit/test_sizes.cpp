@@ -76,7 +76,7 @@ TEST_CASE_TEMPLATE("sizes: everything touches everything, and no hit is lost in 
 }
 
 TEST_CASE_TEMPLATE("sizes: more pairs at exactly the radius than a list of undecided pairs holds", S, float, double) {
-  // half of the triangles lie in the plane z = 0, which 200 spheres touch, but for a third that misses by a unit
+  // half of the triangles lie in the plane z = 0, which 200 spheres touch, except for a third that misses by a unit
   tests::scene<S> made;
   for (int i = 0; i < 60; ++i) made.mesh.add({{-4, -4, 0}, {4, -4, 0}, {0, 4, i % 2 ? 0x1p-20 * i : 0}});
   for (int i = 0; i < 200; ++i) {

@@ -36,7 +36,7 @@ inline void add_arm(scene& s, std::size_t triangles) {
   capsule({1.03, -0.025, 0.58}, {1.03, -0.03, 0.48}, 0.012, 64, 107);
 }
 
-/// Points that are uniform on the mesh but for noise: 2 mm inside to 2 cm outside.
+/// Points that are uniform on the mesh except for noise: 2 mm inside to 2 cm outside.
 inline void add_seen(std::vector<point>& points, std::size_t n, scene const& s, random_numbers& random) {
   auto const sides = [&](std::size_t t) {
     point const a = vertex_of(s, 3 * t);

@@ -2,6 +2,7 @@
 
 import dataclasses
 import os
+import pathlib
 import tempfile
 from typing import Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, Union, overload
 
@@ -177,9 +178,9 @@ class Simulation:
         state = None
         if self._is_set:
             with tempfile.TemporaryDirectory() as folder:
-                self.save(os.path.join(folder, "state"))
-                with open(os.path.join(folder, "state"), "rb") as file:
-                    state = file.read()
+                path = pathlib.Path(folder, "state")
+                self.save(path)
+                state = path.read_bytes()
         return _simulation_of, (self._mesh, self.effects, self._bodies, self._threads, self._options, state)
 
     def set_mesh(self, mesh: Optional[Mesh] = None, bodies: Optional[Iterable[Body]] = None) -> None:
@@ -305,10 +306,12 @@ class Simulation:
         return self._simulation.largest_time_step(self._stream())
 
     def energy(self, density: float = 0) -> Dict[str, float]:
-        """Kinetic, rotational, elastic and potential energy, and that of tangential springs. ``density`` is mass per
-        volume, 0 that of the effect by which particles meet. Waits; O(n), O(n log n) where particles meet."""
+        """Kinetic, rotational, elastic and potential energy, and that of tangential springs; with `contact_work`, also the
+        work lost to damping, sliding and rolling, and that given by walls. ``density`` is mass per volume, 0 that of
+        the effect by which particles meet. Waits; O(n), O(n log n) where particles meet."""
         of_all = self._simulation.energy(self._stream(), real("density", density))
-        return dict(zip(("kinetic", "rotational", "elastic", "potential", "tangential"), of_all))
+        names = "kinetic rotational elastic potential tangential damping sliding rolling given"
+        return dict(zip(names.split(), of_all))
 
     def contacts(self) -> Array:
         """(n, 2) int32, sorted: pairs of particles that touch, the smaller number first. Exact; not across the sides of
@@ -416,7 +419,7 @@ def _simulation_of(mesh, effects, bodies, threads, options, state):
     made = Simulation(mesh, effects, bodies=bodies, threads=threads, **options)
     if state is not None:
         with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "state"), "wb") as file:
-                file.write(state)
-            made.load(os.path.join(folder, "state"))
+            path = pathlib.Path(folder, "state")
+            path.write_bytes(state)
+            made.load(path)
     return made

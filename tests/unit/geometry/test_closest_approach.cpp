@@ -69,7 +69,7 @@ TEST_CASE_TEMPLATE("closest approach: as near as a search finds, and both points
     CHECK(b + c <= 1 + rounding);
     wide const offset = v[0] + b * (v[1] - v[0]) + c * (v[2] - v[0]) - time * path;
     CHECK((offset - found.offset.template cast<double>()).norm() < rounding);
-    // thin triangles amplify the rounding of the face's normal; then an edge is as near but for that
+    // thin triangles amplify the rounding of the face's normal; then an edge is as near except for that
     worst = std::max(worst, std::abs(offset.norm() - least_distance(path, v)));
     faces += b > 0 && c > 0 && b + c < 1;
   }

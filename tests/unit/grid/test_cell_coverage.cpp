@@ -19,7 +19,7 @@ bool meet(interval a, interval b) { return a.from <= b.to && b.from <= a.to; }
 
 }  // namespace
 
-TEST_CASE("cell coverage: steps are sixteenths of a cell, but for the last, which is two") {
+TEST_CASE("cell coverage: steps are sixteenths of a cell, except for the last, which is two") {
   for (int i = 0; i < 1600; ++i) {
     auto const expected = static_cast<std::uint32_t>(i / 100 < 14 ? i / 100 + 1 : 15);
     CHECK(coverage::subcell_of(static_cast<double>(i) / 1600) == expected);

@@ -20,7 +20,7 @@ TEST_CASE_TEMPLATE("size histogram: four bins an octave, and no size is beyond i
     auto const x = static_cast<S>(std::exp2(exponent(engine)));
     std::uint32_t const bin = size_bin(x);
     CHECK(x <= static_cast<S>(bin_end(bin)));
-    CHECK(x * S(1.0000002) >= static_cast<S>(bin_end(bin - 1)));  // but for rounding a double to float
+    CHECK(x * S(1.0000002) >= static_cast<S>(bin_end(bin - 1)));  // except for rounding a double to float
     CHECK(size_bin(2 * x) == bin + 4);
   }
   CHECK(size_bin(S(0)) == 0);

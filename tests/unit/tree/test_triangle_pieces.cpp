@@ -43,7 +43,7 @@ TEST_CASE("triangle pieces: boxes only grow, go one way on each axis, and those 
     std::vector<triangle_piece> pieces(n);
     float const slope[] = {uniform(engine), uniform(engine), uniform(engine)};
     for (std::size_t i = 0; i < n; ++i) {
-      for (int k = 0; k < 3; ++k) {  // along a line, but for some noise
+      for (int k = 0; k < 3; ++k) {  // along a line, except for some noise
         float const at = slope[k] * static_cast<float>(i) + 0.3f * uniform(engine);
         pieces[i].box.lower[k] = at;
         pieces[i].box.upper[k] = at + 0.5f + 0.5f * uniform(engine);
