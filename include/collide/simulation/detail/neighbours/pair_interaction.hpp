@@ -139,6 +139,10 @@ struct pair_interaction {
 /// by rising numbers.
 template <class S, class Effects>
 struct interact_listed : pair_interaction<S, Effects> {
+  /// Waits for memory, mostly: 128 registers a thread.
+  template <class>
+  static constexpr int min_blocks_per_sm = 8;
+
   COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
     if (i == 0) this->order.header->rebuild = 0;  // not read again in this step
     if (i < this->order.header->count && !this->is_left_out(i)) meet_listed(static_cast<std::uint32_t>(i));
@@ -152,7 +156,9 @@ struct interact_listed : pair_interaction<S, Effects> {
     auto const& places = this->order;
     bool const is_listed = places.list(0, self) != places.overflow_mark;
     pair_state p(places.load(self));
-    if (ordered::has_memory && is_listed) fetch_records(self);
+    if constexpr (ordered::has_memory) {
+      if (is_listed) fetch_records(self);
+    }
     do {
       if (is_listed) {
         go_through_list(self, p);

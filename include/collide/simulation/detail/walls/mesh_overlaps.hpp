@@ -109,9 +109,9 @@ inline overlap_item* overlap_items_of_thread(std::size_t n) {
 }
 #endif
 
-/// Kernel functor of `for_each` over `threads`, at least as many as there are particles: those on the list press on the
-/// mesh. Where these are few, they are apart: threads that run together wait for the one that has most to do, and a
-/// device has room for many such groups.
+/// Kernel functor of `for_each` over at least as many as there are particles: those on the list press on the mesh.
+/// Where these are so few that they do not fill a device of `threads`, they are apart: threads that run together wait
+/// for each other.
 template <class S, class Effects, class Triangles, class Memory>
 struct press_on_mesh {
   using effects_type = Effects;
@@ -187,9 +187,12 @@ struct press_on_mesh {
 #endif
   }
 
+  /// Triangles whose boxes a sphere meets are kept until there are some: so threads that run together find some each,
+  /// and then ask for the nearest points together.
   COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
     auto cursor = open.begin(shape);
     candidate_range range{};
+    boxes_met met;
     while (next(open, shape, cursor, range)) {
       int frame = 0;
       if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
@@ -204,25 +207,42 @@ struct press_on_mesh {
           overlaps[j] = k + j < range.count && range.passes_coverage(e) &&
                         triangle_aabb_of(open.mesh[e.triangle]).overlaps(seen.centre, seen.radius);
         }
-        COLLIDE_NO_UNROLL
-        for (std::uint32_t j = 0; j < together; ++j)
-          if (overlaps[j]) add(open, triangles_near[j], frame, seen, near);
+        if (met.size + together > met.capacity) add(open, shape, met, near);
+        for (std::uint32_t j = 0; j < together; ++j) {
+          met.triangles[met.size] = triangles_near[j];
+          met.frames[met.size] = static_cast<std::uint8_t>(frame);
+          met.size += overlaps[j];
+        }
       }
     }
+    add(open, shape, met, near);
   }
   static constexpr std::uint32_t together = 4;
 
-  COLLIDE_HD_INLINE void add(Triangles const& open, id triangle, int frame, sphere<S> const& seen,
-                             overlap_list& near) const {
-    if constexpr (has_moving_mesh<Triangles>) {
-      if (open.mesh.frame_of(triangle) != frame) return;
+  struct boxes_met {
+    static constexpr std::uint32_t capacity = 16;
+    std::uint32_t size = 0;
+    id triangles[capacity];
+    std::uint8_t frames[capacity];
+  };
+
+  COLLIDE_HD_INLINE void add(Triangles const& open, sphere<S> const& shape, boxes_met& met, overlap_list& near) const {
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; k < met.size; ++k) {
+      id const triangle = met.triangles[k];
+      int const frame = met.frames[k];
+      if constexpr (has_moving_mesh<Triangles>) {
+        if (open.mesh.frame_of(triangle) != frame) continue;
+      }
+      sphere<S> const seen = seen_from(open, frame, shape);
+      // of triangles that are near in their boxes only, such as thin ones that meet in a point, there may be very many
+      if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) continue;
+      nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
+      if (!(n.distance < static_cast<double>(seen.radius))) continue;
+      vec3<double> const nearest = in_world(open, frame, scaled(n.normal, -n.distance));
+      near.add({nearest, n.distance, triangle, static_cast<std::uint8_t>(frame), n.kind, false, false, 0, 0, 0, 0, 0});
     }
-    // of triangles that are near in their boxes only, such as thin ones that meet in a point, there may be very many
-    if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) return;
-    nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
-    if (!(n.distance < static_cast<double>(seen.radius))) return;
-    vec3<double> const nearest = in_world(open, frame, scaled(n.normal, -n.distance));
-    near.add({nearest, n.distance, triangle, static_cast<std::uint8_t>(frame), n.kind, false, false, 0, 0, 0, 0, 0});
+    met.size = 0;
   }
 
   /// A triangle relative to the centre of a sphere, along the axes of the world.
