@@ -55,13 +55,42 @@ struct wake_by_bodies {
   }
 };
 
+/// f(triangle, frame) for each triangle whose box a sphere meets, until that is true; then returns true.
+template <class Triangles, class S, class F>
+COLLIDE_HD_INLINE bool meets_box(Triangles const& open, sphere<S> const& shape, F const& f) {
+  constexpr std::uint32_t together = 4;
+  auto cursor = open.begin(shape);
+  candidate_range range{};
+  while (next(open, shape, cursor, range)) {
+    int frame = 0;
+    if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
+    sphere<S> const seen = seen_from(open, frame, shape);
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; k < range.count; k += together) {
+      id triangles[together];
+      bool overlaps[together];
+      for (std::uint32_t j = 0; j < together; ++j) {  // all are on their way at once
+        cell_item const e = range.at(min(k + j, range.count - 1));
+        triangles[j] = e.triangle;
+        overlaps[j] = k + j < range.count && range.passes_coverage(e) &&
+                      triangle_aabb_of(open.mesh[e.triangle]).overlaps(seen.centre, seen.radius);
+      }
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t j = 0; j < together; ++j)
+        if (overlaps[j] && f(triangles[j], frame)) return true;
+    }
+  }
+  return false;
+}
+
 /// Which particles may press on the mesh, in any order.
 struct pressing_list {
   std::uint32_t* count;
   id* numbers;
 };
 
-/// Kernel functor of `for_each` over particles: lists those that may press on the mesh. These are few, and much work.
+/// Kernel functor of `for_each` over particles: lists those that meet the box of a triangle. These are few, and much
+/// work.
 template <class S, class Effects, class Triangles, class Memory>
 struct list_pressing {
   particle_state<S, typename Effects::all> state;
@@ -82,11 +111,17 @@ struct list_pressing {
     particle<S, union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>> p;
     state.load(p, i);
     sphere<S> const shape{p[position{}], reach_of<Effects>(p.the_radius)};
-    if (is_finite(shape.centre) && !triangles.opened().empty(shape)) {
+    if (is_finite(shape.centre) && may_press(shape)) {
       found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
     } else if constexpr (Effects::remembered::size != 0) {
       if (what == meeting::in_step && memory.counts[i] != 0) memory.counts[i] = 0;
     }
+  }
+
+ private:
+  COLLIDE_HD_INLINE bool may_press(sphere<S> const& shape) const {
+    Triangles const open = triangles.opened();
+    return !open.empty(shape) && meets_box(open, shape, [](id, int) { return true; });
   }
 };
 
@@ -190,34 +225,15 @@ struct press_on_mesh {
   /// Triangles whose boxes a sphere meets are kept until there are some: so threads that run together find some each,
   /// and then ask for the nearest points together.
   COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
-    auto cursor = open.begin(shape);
-    candidate_range range{};
     boxes_met met;
-    while (next(open, shape, cursor, range)) {
-      int frame = 0;
-      if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
-      sphere<S> const seen = seen_from(open, frame, shape);
-      COLLIDE_NO_UNROLL
-      for (std::uint32_t k = 0; k < range.count; k += together) {
-        id triangles_near[together];
-        bool overlaps[together];
-        for (std::uint32_t j = 0; j < together; ++j) {  // all are on their way at once
-          cell_item const e = range.at(min(k + j, range.count - 1));
-          triangles_near[j] = e.triangle;
-          overlaps[j] = k + j < range.count && range.passes_coverage(e) &&
-                        triangle_aabb_of(open.mesh[e.triangle]).overlaps(seen.centre, seen.radius);
-        }
-        if (met.size + together > met.capacity) add(open, shape, met, near);
-        for (std::uint32_t j = 0; j < together; ++j) {
-          met.triangles[met.size] = triangles_near[j];
-          met.frames[met.size] = static_cast<std::uint8_t>(frame);
-          met.size += overlaps[j];
-        }
-      }
-    }
+    meets_box(open, shape, [&](id triangle, int frame) {
+      if (met.size == met.capacity) add(open, shape, met, near);
+      met.triangles[met.size] = triangle;
+      met.frames[met.size++] = static_cast<std::uint8_t>(frame);
+      return false;
+    });
     add(open, shape, met, near);
   }
-  static constexpr std::uint32_t together = 4;
 
   struct boxes_met {
     static constexpr std::uint32_t capacity = 16;
