@@ -55,13 +55,31 @@ struct wake_by_bodies {
   }
 };
 
+/// A sphere in the frame of a body at the end of the step; 0 is that of what rests.
+template <class Triangles, class S>
+COLLIDE_HD_INLINE sphere<S> seen_from([[maybe_unused]] Triangles const& open, [[maybe_unused]] int frame,
+                                      sphere<S> const& s) {
+  if constexpr (has_moving_mesh<Triangles>) {
+    return open.mesh.seen_from(frame, s, 1);
+  } else {
+    return s;
+  }
+}
+
 /// f(triangle, frame) for each triangle whose box a sphere meets, until that is true; then returns true.
 template <class Triangles, class S, class F>
 COLLIDE_HD_INLINE bool meets_box(Triangles const& open, sphere<S> const& shape, F const& f) {
-  constexpr std::uint32_t together = 4;
+  constexpr std::uint32_t together = 4, all = 1u << 30;
   auto cursor = open.begin(shape);
   candidate_range range{};
-  while (next(open, shape, cursor, range)) {
+  auto const next = [&] {
+    if constexpr (has_moving_mesh<Triangles>) {
+      return open.next(shape, 1, cursor, all, range);
+    } else {
+      return open.next(shape, cursor, all, range);
+    }
+  };
+  while (next()) {
     int frame = 0;
     if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
     sphere<S> const seen = seen_from(open, frame, shape);
@@ -427,24 +445,6 @@ struct press_on_mesh {
     }
     (void)open, (void)frame;
     return x;
-  }
-  static COLLIDE_HD_INLINE sphere<S> seen_from(Triangles const& open, int frame, sphere<S> const& s) {
-    if constexpr (has_moving_mesh<Triangles>) {
-      return open.mesh.seen_from(frame, s, 1);
-    } else {
-      (void)open, (void)frame;
-      return s;
-    }
-  }
-  template <class Cursor>
-  static COLLIDE_HD_INLINE bool next(Triangles const& open, sphere<S> const& s, Cursor& cursor,
-                                     candidate_range& range) {
-    constexpr std::uint32_t all = 1u << 30;
-    if constexpr (has_moving_mesh<Triangles>) {
-      return open.next(s, 1, cursor, all, range);
-    } else {
-      return open.next(s, cursor, all, range);
-    }
   }
 };
 
