@@ -65,6 +65,23 @@ TEST_CASE_TEMPLATE("groups of triangles: the host finds the statistics of a mesh
   }
 }
 
+TEST_CASE_TEMPLATE("groups of triangles: the histogram of radii that the host finds has those that are valid", S, float,
+                   double) {
+  std::vector<S> radii;
+  for (int i = 0; i < 10000; ++i) radii.push_back(static_cast<S>(std::exp2(i % 23 - 11)));
+  for (S bad : {S(-1), std::numeric_limits<S>::infinity(), std::numeric_limits<S>::quiet_NaN()}) radii.push_back(bad);
+  radii.push_back(S(0)), radii.push_back(S(-0.));
+  std::vector<S> const centres(3 * radii.size());
+  size_histogram seen{};
+  measure_radii<S> const kernel{collide::spheres_xyz(centres.data(), radii.size(), radii.data()), 1, &seen};
+  collide::host(2).launch(kernel.blocks(), kernel);
+  std::vector<std::uint64_t> counts(size_bins, 0);
+  for (S r : radii) {
+    if (r >= 0 && std::isfinite(r)) ++counts[size_bin(r + S(0))];
+  }
+  CHECK(std::equal(counts.begin(), counts.end(), seen.counts));
+}
+
 TEST_CASE("groups of triangles: none is left out that has spheres in its cells, also where cells wrap") {
   std::mt19937 random(1);
   for (std::uint32_t const mask : {3u, 15u, (1u << 31) - 1}) {

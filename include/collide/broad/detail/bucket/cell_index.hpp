@@ -250,7 +250,7 @@ class cell_index {
       fewest = fewest_of_grid() / stride;
     }
     auto* const measured = radii_.reserve(space.resource(), 1);
-    radius_histogram_kernel<S>::run(space, spheres, stride, &measured->radii);
+    measure_radii_of(space, spheres, stride, &measured->radii);
     detail::choose_reaches<S> const kernel{&measured->radii, &measured->reaches, wanted.reach, enough,
                                            fewest,           wanted.max_count,   anew};
     space.launch(1, kernel);

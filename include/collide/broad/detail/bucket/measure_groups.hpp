@@ -15,6 +15,7 @@
 #include <collide/spaces/detail/block.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 #include <collide/spaces/detail/tuning.hpp>
+#include <collide/spheres.hpp>
 
 namespace collide::detail {
 
@@ -147,5 +148,49 @@ struct compute_boxes {
     }
   }
 };
+
+/// Kernel functor of a block of one thread: the histogram of the finite, valid radii of every `stride`-th sphere.
+template <class S>
+struct measure_radii {
+  static constexpr int items = 4;
+  static constexpr std::size_t share = 4096;  ///< spheres of a block
+
+  sphere_view<S> spheres;
+  std::size_t stride;
+  size_histogram* histogram;
+
+  /// How many blocks there are.
+  std::size_t blocks() const { return (spheres.size() + share - 1) / share; }
+
+  template <class>
+  struct scratch {
+    histogram_of_block radii;
+  };
+
+  template <class Block>
+  void operator()(Block& block, scratch<Block>& s) const {
+    static_assert(Block::num_threads == 1, "collide: radii are measured by blocks of one thread");
+    s.radii.clear();
+    std::size_t const begin = block.index() * share, end = min(begin + share, spheres.size());
+    for (std::size_t i = (begin + stride - 1) / stride * stride; i < end; i += stride) {
+      S const r = spheres.radius(i);
+      if (is_valid_radius(r) && is_finite(r)) s.radii.add(size_bin(r > 0 ? r : S(0)), 1, 0);
+    }
+    s.radii.flush(histogram);
+  }
+};
+
+/// Puts the histogram of the finite, valid radii of every `stride`-th sphere into memory of the space.
+template <class S, class Space>
+void measure_radii_of(Space& space, sphere_view<S> const& spheres, std::size_t stride, size_histogram* to) {
+  size_histogram::clear(space, to);
+  if constexpr (bucket_tuning<Space>::bins_spheres) {
+    measure_radii<S> const kernel{spheres, stride, to};
+    space.launch(kernel.blocks(), kernel);
+  } else {
+    radius_histogram_kernel<S> const kernel{spheres, stride, to};
+    space.launch(grid_size<Space>((spheres.size() + stride - 1) / stride, kernel), kernel);
+  }
+}
 
 }  // namespace collide::detail

@@ -123,15 +123,11 @@ S largest_coordinate(Space& space, mesh_view<S> const& mesh, buffer<mesh_statist
 /// Kernel functor: the histogram of the finite, valid radii of every `stride`-th sphere.
 template <class S>
 struct radius_histogram_kernel {
-  static constexpr int items = 1;
+  static constexpr int items = 4;
 
   sphere_view<S> spheres;
   std::size_t stride;
   size_histogram* histogram;
-
-  /// How many spheres a thread looks at: one that works alone many, as its block has a histogram of its own.
-  template <class Block>
-  static constexpr std::size_t share = Block::num_threads > 1 ? 4 : 4096;
 
   template <class Block>
   struct scratch {
@@ -141,25 +137,17 @@ struct radius_histogram_kernel {
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     s.histogram.clear(block);
-    std::size_t const first = block.index() * Block::num_threads * share<Block>;
+    std::size_t const first = block.index() * Block::num_threads * Block::items;
     block.for_each_thread([&](int thread_rank) {
-      for (std::size_t k = 0; k < share<Block>; ++k) {
-        std::size_t const i = (first + k * Block::num_threads + static_cast<std::size_t>(thread_rank)) * stride;
-        if (i >= spheres.size()) break;
-        S const r = spheres.radius(i);
+      for (int k = 0; k < Block::items; ++k) {
+        std::size_t const i =
+            first + static_cast<std::size_t>(k) * Block::num_threads + static_cast<std::size_t>(thread_rank);
+        if (i * stride >= spheres.size()) break;
+        S const r = spheres.radius(i * stride);
         if (is_valid_radius(r) && is_finite(r)) s.histogram.add(block, histogram, size_bin(r > 0 ? r : S(0)), 0);
       }
     });
     s.histogram.flush(block, histogram);
-  }
-
-  /// Puts the histogram into memory of the space.
-  template <class Space>
-  static void run(Space& space, sphere_view<S> const& spheres, std::size_t stride, size_histogram* to) {
-    using block = typename Space::template block<radius_histogram_kernel>;
-    size_histogram::clear(space, to);
-    std::size_t const n = (spheres.size() + stride - 1) / stride, of_block = block::num_threads * share<block>;
-    space.launch((n + of_block - 1) / of_block, radius_histogram_kernel{spheres, stride, to});
   }
 };
 
