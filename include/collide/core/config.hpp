@@ -83,6 +83,14 @@
 #endif
 
 #if defined(__CUDA_ARCH__)
+/// The first of two expressions in device code, the second on the host.
+#define COLLIDE_ON_DEVICE(device, host) device
+#else
+/// The first of two expressions in device code, the second on the host.
+#define COLLIDE_ON_DEVICE(device, host) host
+#endif
+
+#if defined(__CUDA_ARCH__)
 /// Before a loop that the device does not unroll.
 #define COLLIDE_NO_UNROLL _Pragma("unroll 1")
 #else
