@@ -170,6 +170,15 @@ struct third_support : detail::vector_column {};
 /// Which surface `third_support` is of: the first of them.
 struct third_supported_by : detail::byte_column {};
 
+/// The number of the first sphere of the clump that a sphere is of; `no_id` of one that is a grain by itself. See
+/// `clumps`.
+struct in_clump {
+  template <class S>
+  using value = id;
+  template <class S>
+  static constexpr id initial = no_id;
+};
+
 /// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
 struct global_number {
   template <class S>

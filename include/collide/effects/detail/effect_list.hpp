@@ -64,6 +64,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using base = columns<position, velocity>;
   using named = union_of<base, reads_of<E>..., writes_of<E>...>;
   static constexpr bool adheres = any_mesh_contact && contains<named, adhered>;
+  static constexpr bool has_clumps = contains<named, in_clump>;
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
   /// Particles that sleep still press on what they lie on.
   static constexpr bool keeps_support = any_mesh_impulse && contains<named, slow_steps>;
@@ -118,6 +119,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       pairs_in<F, S> || has_try_wake<F, S>::value || has_is_inactive<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
   using own_number = intersection_of<columns<global_number>, all>;
+  using own_clump = intersection_of<columns<in_clump>, all>;
   using own_in_contact = intersection_of<columns<in_contact>, all>;
   using own_slow_steps = columns_if<(is_moving_bodies<E> || ...) && contains<all, slow_steps>, slow_steps>;
   template <bool Needed>
@@ -129,7 +131,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   /// Columns that are read and written for every particle,
   using integration_reads =
       union_of<base, reads_if<E, is_integrated<E>>..., radius_if<any_mesh_contact || keeps_support>, own_number,
-               pair_kicks, columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
+               own_clump, pair_kicks, columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
   using integration_writes = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
                                       columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns,
                                       writes_if<E, writes_while_integrated<E>>...>;

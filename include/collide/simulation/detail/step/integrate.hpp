@@ -28,8 +28,15 @@ COLLIDE_HD_INLINE auto first_kick([[maybe_unused]] Particle const& p) {
   }
 }
 
+/// True of a sphere of a clump, which moves as that does (clump_motion.hpp).
+template <class Particle>
+COLLIDE_HD_INLINE bool is_of_clump([[maybe_unused]] Particle const& p) {
+  if constexpr (contains<typename Particle::list, in_clump>) return p[in_clump{}] != no_id;
+  return false;
+}
+
 /// The beginning of a particle's step. Returns for how long all accelerate it in the first kick: 0 if the mesh holds
-/// it.
+/// it, or it is of a clump.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
   using S = typename Context::scalar;
@@ -40,6 +47,7 @@ COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
       if (n == 1) by = 0;
     });
   }
+  if (is_of_clump(p)) return S(0);
   S const kick = first_kick<Context>(p);
   if constexpr (Context::effects_type::adheres) {
     if (is_stuck(p[adhered{}]) && carry_stuck(context, p, kick)) return S(0);
@@ -90,7 +98,7 @@ COLLIDE_HD_INLINE void end_particle(Context const& context, Particle& p) {
   if constexpr (Context::kick_after != 0) {
     int by = 0;
     if constexpr (contains<typename Particle::list, held>) by = p[held{}];
-    if (by == 0) context.effects.accelerate(p, Context::kick_after * context.dt);
+    if (by == 0 && !is_of_clump(p)) context.effects.accelerate(p, Context::kick_after * context.dt);
     if constexpr (Context::effects_type::adheres) {
       if (by == stuck_all_along) {
         Particle next = p;
