@@ -46,8 +46,7 @@ namespace collide {
 /// \tparam Detector  a `detector`; with a narrow phase for spheres that move, bodies rest in their poses as these do
 template <class Detector>
 class posed {
-  static_assert(detail::is_detector<Detector>::value,
-                "collide: posed is of a detector, such as posed<detector<bucket>>");
+  static_assert(detail::is_detector<Detector>, "collide: posed is of a detector, such as posed<detector<bucket>>");
 
  public:
   using scalar = typename Detector::scalar;                    ///< type of the coordinates: float or double
