@@ -80,8 +80,8 @@ struct bucket_ref : mesh_lookup<S> {
   }
 
   template <class Sphere>
-  COLLIDE_HD bool next(Sphere const& shape, candidate_cursor& c, std::uint32_t max_count,
-                       candidate_range& range) const {
+  COLLIDE_HOT COLLIDE_HD bool next(Sphere const& shape, candidate_cursor& c, std::uint32_t max_count,
+                                   candidate_range& range) const {
     if (c.grid == no_candidates) return false;
     if (c.grid == no_grid) return this->next_of_all(c, max_count, range);
     grid<S> const& g = grids[c.grid];
