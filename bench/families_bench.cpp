@@ -4,10 +4,11 @@
 ///
 /// There are 40 families of random scenes: triangles compact, long, in bundles, giants among small ones, of two sizes,
 /// few, many; spheres few, many, clustered, far; radii from 1:1 to 1:1000. Prints a line of JSON for each: milliseconds
-/// of build and query (`first`), and of the same query again (`again`), of each broad phase, and how `automatic`
-/// compares with the faster one. Even families are to tune on, odd ones to judge by. SCALE divides the numbers of
-/// triangles and spheres. On the host, time is that of one processor; on a device, between events. Built by hand:
-/// nvcc -x cu -std=c++17 -O3 -arch=sm_90 --extended-lambda -Iinclude -Iexamples -Ibench, or with g++ for the host.
+/// of build and query (`first`), and of the same query again (`again`), of each broad phase, of `bucket` also where
+/// `build` is given the largest radius, and how `automatic` compares with the faster one. Even families are to tune on,
+/// odd ones to judge by. SCALE divides the numbers of triangles and spheres. On the host, time is that of one
+/// processor; on a device, between events. Built by hand: nvcc -x cu -std=c++17 -O3 -arch=sm_90 --extended-lambda
+/// -Iinclude -Iexamples -Ibench, or with g++ for the host.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -199,10 +200,10 @@ struct taken {
   double first_ms, again_ms, cell;  ///< the width of cells in the end
 };
 
-/// Least memory is allocated: the detector has seen the scene once.
+/// Least memory is allocated: the detector has seen the scene once. `build` is given the radius if there is one.
 template <class Broad, class Space>
 taken time(Space const& space, collide::mesh_view<float> mesh, collide::sphere_view<float> spheres, int runs,
-           std::uint64_t& pairs) {
+           std::uint64_t& pairs, float radius = -1) {
   collide::detector<Broad, collide::karabassi<>, Space> detector(space);
   collide::pairs found;
   watch_of<Space> watch(space);
@@ -210,7 +211,7 @@ taken time(Space const& space, collide::mesh_view<float> mesh, collide::sphere_v
   double spent = 0;
   for (int k = 0; k <= runs && spent < 2; ++k) {
     double const one = watch([&] {
-      detector.build(mesh);
+      radius < 0 ? detector.build(mesh) : detector.build(mesh, radius);
       detector.query(spheres, found);
     });
     double const two = watch([&] { detector.query(spheres, found); });
@@ -233,19 +234,22 @@ void run(Space const& space, std::size_t scale, int begin, int end) {
     auto const spheres =
         collide::upload(space, f.ratio > 1 ? collide::spheres_xyz(s.centres.data(), s.radii.size(), s.radii.data())
                                            : collide::spheres_xyz(s.centres.data(), s.radii.size(), s.radii[0]));
-    std::uint64_t pairs[3];
+    std::uint64_t pairs[4];
     int const runs = Space::host_accessible ? 2 : 6;
     taken const by_bucket = time<collide::bucket>(space, mesh.view(), spheres.view(), runs, pairs[0]);
     taken const by_bvh = time<collide::bvh>(space, mesh.view(), spheres.view(), runs, pairs[1]);
     taken const by_automatic = time<collide::automatic>(space, mesh.view(), spheres.view(), runs, pairs[2]);
-    bool const same = pairs[0] == pairs[1] && pairs[0] == pairs[2];
+    float const largest = *std::max_element(s.radii.begin(), s.radii.end());
+    taken const given = time<collide::bucket>(space, mesh.view(), spheres.view(), runs, pairs[3], largest);
+    bool const same = pairs[0] == pairs[1] && pairs[0] == pairs[2] && pairs[0] == pairs[3];
     std::printf(
         "{\"family\": %d, \"triangles\": \"%s\", \"spheres\": \"%s\", \"triangle_count\": %zu, \"sphere_count\": %zu, "
-        "\"ratio\": %.3g, \"radius\": %.3g, \"pairs\": %llu, \"same\": %s, \"bucket\": [%.4g, %.4g], \"bvh\": [%.4g, "
-        "%.4g], \"automatic\": [%.4g, %.4g], \"over_best\": [%.3f, %.3f], \"cells\": [%.3g, %.3g]}\n",
+        "\"ratio\": %.3g, \"radius\": %.3g, \"pairs\": %llu, \"same\": %s, \"bucket\": [%.4g, %.4g], "
+        "\"bucket_given\": [%.4g, %.4g], \"bvh\": [%.4g, %.4g], \"automatic\": [%.4g, %.4g], \"over_best\": [%.3f, "
+        "%.3f], \"cells\": [%.3g, %.3g]}\n",
         i, f.triangles, f.spheres, mesh.view().size(), spheres.view().size(), f.ratio, f.radius,
         static_cast<unsigned long long>(pairs[0]), same ? "true" : "false", by_bucket.first_ms, by_bucket.again_ms,
-        by_bvh.first_ms, by_bvh.again_ms, by_automatic.first_ms, by_automatic.again_ms,
+        given.first_ms, given.again_ms, by_bvh.first_ms, by_bvh.again_ms, by_automatic.first_ms, by_automatic.again_ms,
         by_automatic.first_ms / std::min(by_bucket.first_ms, by_bvh.first_ms),
         by_automatic.again_ms / std::min(by_bucket.again_ms, by_bvh.again_ms), by_bucket.cell, by_automatic.cell);
     std::fflush(stdout);

@@ -95,8 +95,9 @@ struct scene {
   collide::cuda_shared space{make_stream(stream)};
   std::optional<collide::uploaded_mesh<float>> mesh;
   std::optional<collide::uploaded_spheres<float>> spheres;
-  std::optional<collide::uploaded_spheres<float>> far;  ///< the same, except for those near the mesh, which are elsewhere
-  collide::pairs told;                                  ///< all pairs, in canonical order
+  std::optional<collide::uploaded_spheres<float>>
+      far;              ///< the same, except for those near the mesh, which are elsewhere
+  collide::pairs told;  ///< all pairs, in canonical order
   collide::buffer<collide::pair> pairs;
   collide::detail::hit_counter_buffer memory_of_total;
   collide::detail::hit_counter total;

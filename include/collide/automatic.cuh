@@ -74,6 +74,7 @@ struct automatic {
       mesh_ = mesh;
       has_grid_ = has_bounds_ = has_tree_ = is_given_ = is_sampled_ = false;
       spent_ = spent_on_boxes_ = 0;
+      choices_ = {};
     }
 
     /// Makes a grid, unless it cannot be: there is an index for the first query.
@@ -155,9 +156,11 @@ struct automatic {
     bool wants_grid(std::size_t spheres) {
       constexpr broad_phase_cost_model c = broad_phase_costs<Space>::value;
       auto const n = static_cast<double>(spheres), triangles = static_cast<double>(mesh_.size());
-      double const saved = n * (c.per_near_sphere_ns + c.per_pair_ns * triangles - c.per_sphere_ns);
+      double const saved = n * (c.per_near_sphere_ns - c.per_sphere_ns) +
+                           std::ceil(n / c.together) * c.together * c.per_pair_ns * triangles;
+      double const spared = has_bounds_ ? 0 : c.per_bound_ns;  // of all pairs, which then need not be made
       // as long as a query does not pay for the grid alone, nobody knows whether there will be another
-      return pays(c.build_ns + c.per_triangle_ns * triangles, saved, spent_);
+      return pays(c.build_ns + (c.per_triangle_ns - spared) * triangles, saved, spent_);
     }
 
     /// True if long thin triangles keep a grid so busy that a tree is faster, the build included. The grid is planned
@@ -167,6 +170,7 @@ struct automatic {
                       [[maybe_unused]] Spheres const& spheres) {
       if constexpr (bvh_tuning<Space>::divides_by_area) {
         if (options.grid.memory_budget != 0 || (is_sampled_ && !is_slender_)) return false;
+        if (!choices_.is_due(spheres.size())) return choices_.for_tree;
         detail::sampled_triangles<S> const sample(mesh_);
         is_sampled_ = true;
         is_slender_ = sample.are_slender();
@@ -179,14 +183,17 @@ struct automatic {
           auto const made = grid_.mesh_lookup();
           candidates = {made.grids, made.grid_count};
         }
-        double const build = has_tree_ ? 0 : slender_costs.per_triangle_ns * static_cast<double>(mesh_.size());
-        double saved = saved_by_tree(slender_costs, sample, spheres, 8, candidates);  // mostly these tell
-        if (build < 4 * (saved + spent_on_boxes_)) {
-          saved = saved_by_tree(slender_costs, sample, spheres, 128, candidates);
-        }
-        bool const wanted = pays(build, saved, spent_on_boxes_);
-        if (wanted) is_prepared_ = false;
-        return wanted;
+        double const pieces = pieces_of(sample, spheres);
+        double const build =
+            has_tree_ ? 0 : slender_costs.per_built_piece_ns * pieces * static_cast<double>(mesh_.size());
+        auto const saved_by = [&](std::size_t max_count) {
+          return saved_by_tree(slender_costs, sample, pieces, spheres, max_count, candidates);
+        };
+        double saved = saved_by(8);  // mostly these tell
+        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by(128);
+        choices_.for_tree = pays(build, saved, spent_on_boxes_, choices_.next - choices_.queries);
+        if (choices_.for_tree) is_prepared_ = false;
+        return choices_.for_tree;
       } else {
         return false;
       }
@@ -201,32 +208,53 @@ struct automatic {
         detail::sampled_triangles<S> const sample(mesh_);
         if (!sample.are_slender()) return false;
         S const radius = spheres.one_radius() ? spheres.common_radius() : spheres[0].radius;
-        return saved_by_tree(slender_costs_of_steps, sample, detail::middles_as_spheres<S>{mesh_, radius}, 128) > 0;
+        detail::middles_as_spheres<S> const middles{mesh_, radius};
+        return saved_by_tree(slender_costs_of_steps, sample, pieces_of(sample, middles), middles, 128) > 0;
       } else {
         return false;
       }
     }
 
+    /// Into how many pieces a tree cuts triangles, about, as triangle_pieces.hpp has it.
+    template <class Spheres>
+    static double pieces_of(detail::sampled_triangles<S> const& sample, Spheres const& spheres) {
+      double const around = sample.reached(spheres, 8, 1).boxes;
+      return detail::min(detail::max(std::sqrt(around / 2), 2.0), 16.0);
+    }
+
     /// Nanoseconds by which queries by a tree are faster than by a grid, from at most so many spheres.
     template <class Spheres>
-    static double saved_by_tree(slender_cost_model const& c, detail::sampled_triangles<S> const& sample,
+    static double saved_by_tree(slender_cost_model const& c, detail::sampled_triangles<S> const& sample, double pieces,
                                 Spheres const& spheres, std::size_t max_count,
                                 detail::planned_candidates<S> const& candidates = {}) {
-      // as triangle_pieces.hpp has it
-      double const around = sample.reached(spheres, 8, 1).boxes,
-                   pieces = detail::min(detail::max(std::sqrt(around / 2), 2.0), 16.0);
       detail::reached_by_sphere const mean = sample.reached(spheres, max_count, pieces, candidates);
       return static_cast<double>(spheres.size()) *
              (c.per_box_ns * mean.candidates - c.per_sphere_ns - c.per_touched_ns * mean.triangles -
               c.per_piece_ns * (mean.pieces - mean.triangles));
     }
 
-    /// True if what is saved pays for a build, with what queries have lost so far; else this one adds to that.
-    static bool pays(double build, double saved, double& lost) {
+    /// True if what is saved pays for a build, with what queries have lost so far; else this one adds to that, and
+    /// those like it that are not asked.
+    static bool pays(double build, double saved, double& lost, std::size_t queries = 1) {
       if (build < saved + lost) return true;
-      lost += saved > 0 ? saved : 0;
+      lost += saved > 0 ? saved * static_cast<double>(queries) : 0;
       return false;
     }
+
+    /// When it is asked again whether a tree is faster, as that takes time too: by the first queries, then by every
+    /// sixteenth, and by one of twice or half as many spheres.
+    struct tree_choices {
+      std::size_t queries = 0, next = 0, spheres = 0;  ///< queries so far, and the next that asks
+      bool for_tree = false;
+
+      bool is_due(std::size_t n) {
+        bool const is_alike = n / 2 <= spheres && spheres / 2 <= n;
+        if (++queries < next && is_alike) return false;
+        next = queries + detail::min<std::size_t>(queries, 16);
+        spheres = n;
+        return true;
+      }
+    };
 
     /// Makes what the strategy of this query needs, for a radius or for spheres.
     template <class Space, class RadiusOrSpheres>
@@ -255,8 +283,9 @@ struct automatic {
     bool is_prepared_ = false;                      ///< for the spheres of this query
     bool is_sampled_ = false, is_slender_ = false;  ///< the mesh
     strategy strategy_ = strategy::all_pairs;       ///< of this query
-    double spent_ = 0;                              ///< nanoseconds that a grid would have saved so far
-    double spent_on_boxes_ = 0;                     ///< nanoseconds that a tree would have saved so far
+    tree_choices choices_;
+    double spent_ = 0;           ///< nanoseconds that a grid would have saved so far
+    double spent_on_boxes_ = 0;  ///< nanoseconds that a tree would have saved so far
   };
 };
 

@@ -76,42 +76,54 @@ struct mesh_measures {
   }
 };
 
-/// Radii of grids that spheres ask for, falling.
+/// The grids that spheres ask for.
 template <class S>
-struct grid_request_radii {
-  S reaches[max_grids] = {};
-  int count = 0;
+struct wanted_grids {
+  S reach = 0;               ///< of the largest; negative: the radius of the largest sphere
+  int max_count = 0;         ///< how many there may be
   bool whole_boxes = false;  ///< spheres that move look for triangles along their paths
 
-  friend bool operator==(grid_request_radii const& a, grid_request_radii const& b) {
-    return a.count == b.count && a.whole_boxes == b.whole_boxes &&
-           std::equal(a.reaches, a.reaches + a.count, b.reaches);
+  /// True if the radii of the spheres tell how far they reach.
+  bool by_radii() const { return max_count > 1 || reach < 0; }
+
+  /// True if these do for spheres that ask for `other`.
+  bool serve(wanted_grids const& other) const {
+    return reach == other.reach && max_count >= other.max_count && whole_boxes == other.whole_boxes;
   }
+};
+
+/// The radii of spheres, and the reaches of grids that follow from them.
+template <class S>
+struct measured_radii {
+  size_histogram radii;
+  grid_reaches<S> reaches;
 };
 
 /// The grids that an index has.
 template <class S>
 struct grid_set {
   buffer<grid<S>> memory;
-  int count = 0;                 ///< as many as were asked for, or as the budget allows
-  grid_request_radii<S> asked;   ///< what they were made for
-  std::size_t spheres = 0;       ///< how many they were made for
-  bool are_filled = false;       ///< the triangles are entered into their cells
-  std::size_t cells = 0;         ///< of all grids
-  std::size_t entry_limit = 0;   ///< of all cells
-  std::uint32_t table_bits = 0;  ///< log2 of the number of cells per grid
+  int count = 0;                  ///< as many as were asked for, or as the budget allows; the last may not be in use
+  wanted_grids<S> asked;          ///< what they were made for
+  std::size_t spheres = 0;        ///< how many they were made for
+  bool are_filled = false;        ///< the triangles are entered into their cells
+  bool const* are_new = nullptr;  ///< where a device writes if they must be, as it has made them anew; null: they must
+  std::size_t cells = 0;          ///< of all grids
+  std::size_t entry_limit = 0;    ///< of all cells
+  std::uint32_t table_bits = 0;   ///< log2 of the number of cells per grid
 
   /// Forgets the grids.
   void clear() {
-    count = asked.count = 0;
+    count = asked.max_count = 0;
     are_filled = false;
+    are_new = nullptr;
   }
 
-  /// The radius of a grid for spheres of one radius: that of the one that is there if it is at most `most` times as
-  /// wide, else `wider`.
+  /// The radius of a grid for spheres of one radius: that of the one that is there if it is at most `max_ratio` times
+  /// as wide, else `wider`.
   S reach_for(S radius, S max_ratio, S wider) const {
-    bool const serves = asked.count == 1 && radius <= asked.reaches[0] && asked.reaches[0] <= max_ratio * radius;
-    return serves ? asked.reaches[0] : wider;
+    bool const serves = asked.max_count == 1 && radius <= asked.reach && asked.reach <= max_ratio * radius;
+    return serves ? asked.reach : wider;
   }
 };
 
@@ -122,9 +134,10 @@ enum class query_order { sphere_major, triangle_major };
 /// The plan of a query.
 template <class S>
 struct query_plan {
-  grid_request_radii<S> grids;  ///< that it needs
-  bool makes_grids = false;     ///< those that are there do not serve
-  std::size_t spheres = 0;      ///< of all queries to come, at least; more pay for narrower cells
+  wanted_grids<S> grids;     ///< that it needs
+  bool makes_grids = false;  ///< those that are there do not serve
+  bool asks_radii = false;   ///< those that are there serve unless other radii need others
+  std::size_t spheres = 0;   ///< of all queries to come, at least; more pay for narrower cells
   query_order order = query_order::sphere_major;
 };
 
@@ -170,18 +183,17 @@ class bucket::index {
     space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
-  /// Says that one grid for spheres up to `radius` serves until the next build; the next query makes it, as it knows
-  /// better what it costs. Where spheres are sorted into the cells it does nothing.
+  /// Says that grids for spheres up to `radius` serve until the next build; the next query makes them, as it knows
+  /// better what they cost. Where spheres are sorted into the cells it does nothing.
   template <class Space>
   void prepare(Space&, bucket const& options, S radius) {
     if (bins_spheres<Space>(options)) return;
     bool const serves =
         measures_.statistics.data() != nullptr && detail::is_valid_radius(radius) && detail::is_finite(radius);
-    given_ = serves ? detail::grid_request_radii<S>{{radius}, 1} : detail::grid_request_radii<S>{};
+    given_ = serves ? detail::wanted_grids<S>{radius, 1} : detail::wanted_grids<S>{};
   }
 
   /// Makes the grids that the spheres need, unless they are there, and what else the next query needs of the mesh.
-  /// Waits for the host to see the radii where they differ, unless one was given.
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     carry_out(space, options, spheres, plan_query(space, options, spheres));
@@ -234,19 +246,20 @@ class bucket::index {
   }
 
  private:
-  static constexpr std::size_t fixed_bytes =
-      sizeof(detail::mesh_statistics<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
-
-  /// How many cells there are at least where long triangles may pass through them.
-  template <class Space>
-  static constexpr std::size_t cells_of_few = bucket_tuning<Space>::bins_spheres ? std::size_t{1} << 17 : 0;
+  static constexpr std::size_t fixed_bytes = sizeof(detail::mesh_statistics<S>) +
+                                             detail::max_grids * sizeof(detail::grid<S>) +
+                                             sizeof(detail::measured_radii<S>);
 
   /// So many queries of few spheres go through all triangles; then these are entered.
   static constexpr std::size_t few_queries = 2;
 
-  /// For at most this many triangles the lists of cells get memory for the largest possible number of entries; for more
-  /// triangles, or several grids, the host reads the number back first.
+  /// For at most this many triangles the lists of cells get memory for the largest possible number of entries, and of
+  /// so many grids; for more triangles, or cells of a given width, the host reads the numbers back first.
   static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
+  static constexpr int grids_without_readback = 4;
+
+  /// So many radii tell how far grids reach below a radius that was given.
+  static constexpr std::size_t sampled_radii = 4096;
 
   /// True if boxes of triangles are kept: a thread that works alone asks them before it reads a triangle, and a
   /// simulation in each step. Where threads work together to read the mesh again takes less time.
@@ -293,8 +306,8 @@ class bucket::index {
         if (detail::is_finite(reach) && reach <= 2 * spheres.common_radius()) {
           detail::query_plan<S> plan;
           // a new one is wider, so that a bit more next time fits too
-          plan.grids = {{grids_.reach_for(reach, 2, reach + reach / 16)}, 1, grids_.asked.whole_boxes};
-          plan.makes_grids = !(plan.grids == grids_.asked);
+          plan.grids = {grids_.reach_for(reach, 2, reach + reach / 16), 1, grids_.asked.whole_boxes};
+          plan.makes_grids = !grids_.asked.serve(plan.grids);
           plan.order = detail::query_order::triangle_major;
           return plan;
         }
@@ -305,39 +318,38 @@ class bucket::index {
 
   /// The grids for the radius that was given, or for the radii of the spheres: those that are there if they serve.
   template <class Space, class Spheres>
-  detail::query_plan<S> plan_grids(Space& space, Spheres const& spheres, bool whole_boxes) {
-    detail::query_plan<S> plan;
-    plan.grids = given_.value_or(grids_.asked);
-    if (!given_ && measures_.statistics.data() != nullptr) {
-      detail::grid_request_radii<S> wanted;
-      if (!spheres.one_radius()) {
-        // of a sorted sphere its own reach decides what is near: grids pay where they reach farther than triangles do;
-        // a grid of its own saves two spheres for each triangle less time than it takes to fill
-        S enough = 0;
-        std::size_t fewest = 2 * mesh_.size();
-        if constexpr (bucket_tuning<Space>::bins_spheres) {
-          enough = 2 * static_cast<S>(measures_.statistics.data()->extents.median());
-          fewest = 0;
-        }
-        wanted.count =
-            detail::reaches_of(detail::histogram_of_radii<S>(space, spheres, radii_), enough, fewest, wanted.reaches);
-      } else if (S const radius = spheres.common_radius();
-                 detail::is_valid_radius(radius) && detail::is_finite(radius)) {
-        wanted.reaches[0] = grids_.reach_for(radius, 4, radius);
-        wanted.count = 1;
-      }
-      if (wanted.count != 0) plan.grids = wanted;
+  detail::query_plan<S> plan_grids(Space&, Spheres const& spheres, bool whole_boxes) {
+    detail::wanted_grids<S> wanted = given_.value_or(detail::wanted_grids<S>{});
+    if (!spheres.one_radius()) {
+      if (!given_) wanted = {-1, 1};
+      if (wanted.max_count != 0) wanted.max_count = max_grid_count<Space>(spheres.size());
+    } else if (S const radius = spheres.common_radius();
+               !given_ && detail::is_valid_radius(radius) && detail::is_finite(radius)) {
+      wanted = {grids_.reach_for(radius, 4, radius), 1};
     }
-    plan.grids.whole_boxes = whole_boxes;
-    plan.makes_grids = plan.grids.count != 0 && !(plan.grids == grids_.asked);
+    wanted.whole_boxes = whole_boxes;
+    detail::query_plan<S> plan;
+    plan.makes_grids = measures_.statistics.data() != nullptr && wanted.max_count != 0 && !grids_.asked.serve(wanted);
+    plan.grids = plan.makes_grids ? wanted : grids_.asked;
+    plan.asks_radii = grids_.count != 0 && plan.grids.reach < 0;
     return plan;
   }
+
+  /// How many grids there may be for spheres of many radii.
+  template <class Space>
+  int max_grid_count(std::size_t spheres) const {
+    if (bucket_tuning<Space>::bins_spheres) return detail::max_grids;
+    if (detail::serves_steps<Space> || spheres <= fewest_of_grid()) return 1;
+    return mesh_.size() > max_without_readback ? detail::max_grids : grids_without_readback;
+  }
+
+  /// A grid of its own saves so many spheres less time than it takes to fill.
+  std::size_t fewest_of_grid() const { return 2 * mesh_.size(); }
 
   /// Makes what a plan needs of the mesh.
   template <class Space, class Spheres>
   void carry_out(Space& space, bucket const& options, Spheres const& spheres, detail::query_plan<S> const& plan) {
-    if (plan.makes_grids) make_grids(space, options, plan, spheres);
-    grids_.asked.whole_boxes = plan.grids.whole_boxes;
+    if (plan.makes_grids || plan.asks_radii) make_grids(space, options, plan, spheres);
     ++queries_;
     order_ = plan.order;
     if constexpr (bucket_tuning<Space>::bins_spheres) bins_.clear();
@@ -352,56 +364,109 @@ class bucket::index {
     if constexpr (std::is_same<Spheres, sphere_view<S>>::value) {
       bins_.sort(space, spheres);
     } else {
-      bins_.sort(space, detail::swept_bounding_spheres<S>{spheres, grids_.asked.reaches[0]});
+      bins_.sort(space, detail::swept_bounding_spheres<S>{spheres, grids_.asked.reach});
     }
     return true;
   }
 
-  /// Chooses the cells of grids up to these radii, as many as the budget allows, for these spheres.
+  /// Makes the grids of a plan, as many as the budget allows, for these spheres. Where their radii tell how far they
+  /// reach a device sees itself whether those that are there do.
   template <class Space, class Spheres>
-  void make_grids(Space& space, bucket const& options, detail::query_plan<S> const& wanted, Spheres const& spheres) {
-    forget_grids();  // until all is done: an exception leaves no half-made grid behind
-    detail::grid_request_radii<S> const& asked = wanted.grids;
-    std::size_t const sphere_count = std::max(spheres.size(), wanted.spheres);
+  void make_grids(Space& space, bucket const& options, detail::query_plan<S> const& plan, Spheres const& spheres) {
+    detail::wanted_grids<S> const wanted = plan.grids;
+    bool const waits = bucket_tuning<Space>::bins_spheres || waits_for_sizes(options);
+    bool anew = plan.makes_grids || !(waits || grids_.are_filled);
+    int max_count = wanted.max_count;
+    detail::grid_reaches<S> const* reaches = nullptr;
+    if (wanted.by_radii()) {
+      reaches = choose_reaches(space, spheres, wanted, anew);
+      if (waits) {
+        detail::grid_reaches<S> const seen = space.read(reaches);
+        if (!seen.are_new) return;
+        anew = true;
+        max_count = seen.count;
+      }
+    }
+    std::size_t const sphere_count = std::max(spheres.size(), plan.spheres);
+    if (anew) {
+      forget_grids();  // until all is done: an exception leaves no half-made grid behind
+      plan_memory(space, options, max_count, max_count > 1 && !waits, sphere_count);
+    }
+    grids_.are_filled = false;
+    grids_.are_new = reaches == nullptr || waits ? nullptr : &reaches->are_new;
+    if (grids_.count != 0) plan_cells(space, options, wanted, reaches, spheres, static_cast<float>(sphere_count));
+    grids_.asked = wanted;
+    grids_.spheres = sphere_count;
+  }
+
+  /// Chooses how far grids reach by the radii of the spheres.
+  template <class Space>
+  detail::grid_reaches<S> const* choose_reaches(Space& space, sphere_view<S> const& spheres,
+                                                detail::wanted_grids<S> const& wanted, bool anew) {
+    // of a sorted sphere its own reach decides what is near: grids pay where they reach farther than triangles do
+    S enough = 0;
+    std::uint64_t fewest = 0;
+    std::size_t const stride = wanted.reach < 0 ? 1 : 1 + spheres.size() / sampled_radii;
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      enough = 2 * static_cast<S>(measures_.statistics.data()->extents.median());
+    } else {
+      fewest = fewest_of_grid() / stride;
+    }
+    auto* const measured = radii_.reserve(space.resource(), 1);
+    detail::measure_radii_of(space, spheres, stride, &measured->radii);
+    detail::choose_reaches<S> const kernel{&measured->radii, &measured->reaches, wanted.reach, enough,
+                                           fewest,           wanted.max_count,   anew};
+    space.launch(1, kernel);
+    return &measured->reaches;
+  }
+
+  /// Takes memory for up to `max_count` grids. Where nobody knows how many there will be each may have half the
+  /// entries.
+  template <class Space>
+  void plan_memory(Space& space, bucket const& options, int max_count, bool may_be_fewer, std::size_t spheres) {
     auto const* const boxes = measures_.boxes();
     std::size_t const taken = fixed_bytes + (boxes != nullptr ? mesh_.size() * sizeof *boxes : 0);
-    auto const plan = detail::memory_plan::make(mesh_.size(), sphere_count, asked.count, options.cell_width > 0, taken,
+    auto const plan = detail::memory_plan::make(mesh_.size(), spheres, max_count, options.cell_width > 0, taken,
                                                 options.memory_budget, detail::serves_steps<Space>);
-    if (plan.grids != 0) {
-      auto const count = static_cast<std::size_t>(plan.grids);
-      // what is held for another number of cells would come on top of what the budget was planned for
-      if (options.memory_budget != 0 && grids_.cells != count << plan.table_bits) lists_.release();
-      grids_.cells = count << plan.table_bits;
-      grids_.entry_limit = plan.entries;
-      grids_.table_bits = plan.table_bits;
-      auto* const grids = grids_.memory.reserve(space.resource(), detail::max_grids);
-      detail::grid_request<S> request{{},
-                                      plan.grids,
-                                      static_cast<S>(options.cell_width),
-                                      asked.whole_boxes,
-                                      0.5f * static_cast<float>(plan.entries) / static_cast<float>(plan.grids),
-                                      plan.table_bits,
-                                      static_cast<float>(sphere_count),
-                                      bucket_tuning<Space>::costs};
-      std::copy(asked.reaches, asked.reaches + detail::max_grids, request.reaches);
-      detail::plan_grid<S, Spheres> kernel{mesh_, boxes,   spheres, measures_.statistics.data(),
-                                           grids, request, nullptr, 0};
-      if constexpr (bucket_tuning<Space>::bins_spheres) {
-        if (bins_spheres<Space>(options)) kernel.mesh = bins_.mesh().mesh, kernel.boxes = nullptr;
-      } else {
-        kernel.cells = lists_.to_empty(space, grids_.cells);
-        kernel.listed = grids_.cells + 1;
-      }
-      space.launch(kernel.template blocks<typename Space::template block<decltype(kernel)>>(), kernel);
-      if constexpr (bucket_tuning<Space>::bins_spheres) {
-        if (bins_spheres<Space>(options)) bins_.mark(space, grids, plan.grids, plan.table_bits);
-      }
-      grids_.count = plan.grids;
-      ref_.grids = grids;  // without lists, until the triangles are entered
-      ref_.grid_count = plan.grids;
+    if (plan.grids == 0) return;
+    std::size_t const cells = static_cast<std::size_t>(plan.grids) << plan.table_bits;
+    // what is held for another number of cells would come on top of what the budget was planned for
+    if (options.memory_budget != 0 && grids_.cells != cells) lists_.release();
+    grids_.cells = cells;
+    grids_.entry_limit = may_be_fewer ? plan.entries / 2 : plan.entries;
+    grids_.table_bits = plan.table_bits;
+    grids_.count = plan.grids;
+    grids_.memory.reserve(space.resource(), detail::max_grids);
+  }
+
+  /// Chooses the cells of the grids.
+  template <class Space, class Spheres>
+  void plan_cells(Space& space, bucket const& options, detail::wanted_grids<S> const& wanted,
+                  detail::grid_reaches<S> const* reaches, Spheres const& spheres, float sphere_count) {
+    auto* const grids = grids_.memory.data();
+    detail::grid_request<S> const request{wanted.reach,
+                                          reaches,
+                                          grids_.count,
+                                          static_cast<S>(options.cell_width),
+                                          wanted.whole_boxes,
+                                          0.5f * static_cast<float>(grids_.entry_limit),
+                                          grids_.table_bits,
+                                          sphere_count,
+                                          bucket_tuning<Space>::costs};
+    detail::plan_grid<S, Spheres> kernel{mesh_, measures_.boxes(), spheres, measures_.statistics.data(),
+                                         grids, request,           nullptr, 0};
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (bins_spheres<Space>(options)) kernel.mesh = bins_.mesh().mesh, kernel.boxes = nullptr;
+    } else {
+      kernel.cells = lists_.to_empty(space, grids_.cells);
+      kernel.listed = grids_.cells + 1;
     }
-    grids_.asked = asked;
-    grids_.spheres = sphere_count;
+    space.launch(kernel.template blocks<typename Space::template block<decltype(kernel)>>(), kernel);
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (bins_spheres<Space>(options)) bins_.mark(space, grids, grids_.count, grids_.table_bits);
+    }
+    ref_.grids = grids;  // without lists, until the triangles are entered
+    ref_.grid_count = grids_.count;
   }
 
   /// Enters the triangles into the cells, unless they are there, or there are no grids.
@@ -414,14 +479,18 @@ class bucket::index {
         measures_.has_boxes = true;
       }
     }
-    bool const waits_for_size = mesh_.size() > max_without_readback || grids_.count > 1 || options.cell_width > 0;
+    bool const waits = waits_for_sizes(options) || (bucket_tuning<Space>::bins_spheres && grids_.count > 1);
     auto const* const boxes = measures_.boxes();
     auto const* const grids = grids_.memory.data();
-    lists_.enter(space, mesh_, boxes, {grids, grids_.count, grids_.table_bits, grids_.cells}, grids_.entry_limit,
-                 waits_for_size);
+    lists_.enter(space, mesh_, boxes, {grids, grids_.count, grids_.table_bits, grids_.cells, grids_.are_new},
+                 grids_.entry_limit, waits);
     ref_ = {{mesh_, boxes}, grids,          grids_.count,     lists_.occupied(),
             lists_.data(),  lists_.total(), lists_.entries(), lists_.capacity()};
     grids_.are_filled = true;
+  }
+
+  bool waits_for_sizes(bucket const& options) const {
+    return mesh_.size() > max_without_readback || options.cell_width > 0;
   }
 
   void forget_grids() {
@@ -434,11 +503,11 @@ class bucket::index {
   detail::query_order order_ = detail::query_order::sphere_major;  ///< of the next query
   detail::mesh_measures<S> measures_;
   detail::grid_set<S> grids_;
-  std::optional<detail::grid_request_radii<S>> given_;  ///< by the caller, until the next build
+  std::optional<detail::wanted_grids<S>> given_;  ///< by the caller, until the next build
   detail::cell_lists<S> lists_;
   detail::sorted_spheres<S> bins_;
   detail::bucket_ref<S> ref_ = {};
-  buffer<detail::size_histogram> radii_;
+  buffer<detail::measured_radii<S>> radii_;
 };
 
 #if defined(COLLIDE_COMPILED)

@@ -117,9 +117,9 @@ class detector {
   }
 
   /// Prepares what depends on the mesh, for spheres at rest of up to a radius. The radius is a hint: results are the
-  /// same. On a device the first query then does not wait to see radii that differ, and makes one grid for all; on the
-  /// host, without a memory budget, only `automatic` uses it. A CUDA graph that has a query has the build before it,
-  /// too, as the query makes what it needs of the mesh.
+  /// same. On a device, of spheres with a radius each, some radii then tell how many grids there are, and later queries
+  /// keep them; on the host, without a memory budget, only `automatic` uses it. A CUDA graph that has a query has the
+  /// build before it, too, as the query makes what it needs of the mesh.
   ///
   /// \param mesh    triangles in memory of the space, not copied: valid and unchanged until the last query is done
   /// \param radius  the largest usual radius, in the units of the coordinates, not negative. Larger spheres are found
@@ -190,8 +190,8 @@ class detector {
   ///
   /// After an exception the detector can be used again; what the sink holds is then unspecified.
   /// \complexity That of the broad phase: O(n + candidates) for `bucket`, O(n * triangles) for `all_pairs`.
-  /// \sync As the sink says. Where radii differ, `bucket` waits for their range, unless `build` was given a radius; and
-  /// for a size where it makes a grid for more than 2^18 triangles, several grids, or cells of a given width.
+  /// \sync As the sink says. `bucket` waits for a size where it makes a grid for more than 2^18 triangles, or
+  /// cells of a given width; there it waits for the range of radii, too, if they differ and `build` was given none.
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {
     using pass = detail::query_pass<typename BroadPhase::template index<Scalar>, NarrowPhase, ExecutionSpace, Scalar>;

@@ -99,7 +99,7 @@ class simulation_of final : public simulation_base {
   double largest_time_step() override { return collide::largest_time_step(one_); }
   std::vector<double> energy(double density) override {
     collide::energy_sums const e = collide::energy(one_, density);
-    return {e.kinetic, e.rotational, e.elastic, e.potential, e.tangential};
+    return {e.kinetic, e.rotational, e.elastic, e.potential, e.tangential, e.damping, e.sliding, e.rolling, e.given};
   }
 
   std::vector<double> sums(std::size_t effect) override {  // not by way of the effect, which would wake what sleeps

@@ -26,7 +26,8 @@ EFFECTS = """velocity_verlet gravity drag wind bounce friction spin adhesion sph
     granular_contact external_forces mass_flow""".split()
 BY_FORCES = "granular_contact"  # makes the mesh solid by forces
 ACTS_BY_IMPULSES = ["bounce", "friction", "spin", "adhesion", "absorb", "warms"]  # these do not compile beside it
-TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms", "external_forces": "tests::pairs::stirs", "mass_flow": "mass_flow<>", "wear": "wear<>"}
+TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms", "external_forces": "tests::pairs::stirs", "mass_flow": "mass_flow<>", "wear": "wear<>",
+         "contact_work": "contact_work<>"}
 LAWS = {  # of contact by forces, of which the lists of a scalar take turns: one that remembers nothing, and those that do
     "float": ["granular_contact<collide::linear, collide::dashpot>",
               "granular_contact<collide::linear, collide::cundall_strack, collide::marshall<collide::epsd>>"],
@@ -76,8 +77,9 @@ FOUND = [
 ]
 # Behind all others, of effects that only go with few: they are in no pair that must be covered.
 LAST = [
-    ("velocity_verlet gravity granular_contact wear mesh_forces reaction polydisperse lost", ("moving", "karabassi", "double")),
-    ("sleep gravity emit granular_contact wear lost reaction periodic_box", ("driven", "karabassi", "float")),
+    ("velocity_verlet gravity granular_contact wear contact_work mesh_forces reaction polydisperse lost", ("moving", "karabassi", "double")),
+    ("sleep gravity emit granular_contact wear contact_work lost reaction periodic_box", ("driven", "karabassi", "float")),
+    ("gravity sphere_contact contact_work polydisperse periodic_box lost", ("fixed", "karabassi", "float")),
 ]
 # Pairs that do not compile: the test of tests/compile_fail, and the reason.
 REFUSED = {

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <collide/effects/contact_work.hpp>
 #include <collide/effects/external_forces.hpp>
 #include <collide/effects/lost.hpp>
 #include <collide/effects/lost_motion.hpp>
@@ -150,6 +151,8 @@ E parameters(trial const& t, list_sums const& sums, bool several_sizes) {
     return sums.flow.through({0, 0, 0.1}, {0, 0, -1}, collide::one_density{density});
   } else if constexpr (std::is_same<E, collide::wear<>>::value) {
     return sums.worn.effect(collide::one_density{density});
+  } else if constexpr (std::is_same<E, collide::contact_work<>>::value) {
+    return {{density}};
   } else if constexpr (std::is_same<E, collide::reaction>::value) {
     return sums.effect(density);
   } else {

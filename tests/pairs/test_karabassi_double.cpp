@@ -20,4 +20,4 @@ static bool const list_17_is_hunted = hunt<list_17>("17", "granular_contact mass
 TEST_CASE("pairs: list 25") { check_list<list_25>(); }
 static bool const list_25_is_hunted = hunt<list_25>("25", "sphere_contact sleep polydisperse reaction wind gravity absorb warms velocity_verlet absorbing_box");
 TEST_CASE("pairs: list 30") { check_list<list_30>(); }
-static bool const list_30_is_hunted = hunt<list_30>("30", "velocity_verlet gravity granular_contact wear mesh_forces reaction polydisperse lost");
+static bool const list_30_is_hunted = hunt<list_30>("30", "velocity_verlet gravity granular_contact wear contact_work mesh_forces reaction polydisperse lost");

@@ -22,4 +22,6 @@ static bool const list_24_is_hunted = hunt<list_24>("24", "box_walls mass_flow v
 TEST_CASE("pairs: list 26") { check_list<list_26>(); }
 static bool const list_26_is_hunted = hunt<list_26>("26", "granular_contact emit mesh_forces lost_motion absorbing_box lost");
 TEST_CASE("pairs: list 31") { check_list<list_31>(); }
-static bool const list_31_is_hunted = hunt<list_31>("31", "sleep gravity emit granular_contact wear lost reaction periodic_box");
+static bool const list_31_is_hunted = hunt<list_31>("31", "sleep gravity emit granular_contact wear contact_work lost reaction periodic_box");
+TEST_CASE("pairs: list 32") { check_list<list_32>(); }
+static bool const list_32_is_hunted = hunt<list_32>("32", "gravity sphere_contact contact_work polydisperse periodic_box lost");

@@ -60,11 +60,11 @@ void check_automatic(Space space) {
 /// Many small queries make a grid in the end.
 template <class Space>
 void check_many_queries(Space space) {
-  io::scene const s = io::study_scene(100, 2000);
+  io::scene const s = io::study_scene(10, 2000);
   std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()), centres(s.centres.begin(), s.centres.end());
   auto const mesh = collide::upload(
       space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count()));
-  auto const balls = collide::upload(space, collide::spheres_xyz(centres.data(), 100, 12));
+  auto const balls = collide::upload(space, collide::spheres_xyz(centres.data(), 10, 12));
   collide::detector<collide::automatic, collide::karabassi<>, Space> detector(space);
   detector.build(mesh.view());
   collide::pairs pairs;

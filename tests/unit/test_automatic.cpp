@@ -14,10 +14,10 @@ TEST_CASE("automatic: many queries of few spheres make a grid in the end, on the
 
 namespace {
 
-/// A detector of a scene of bars finds what all pairs do; returns the width of the cells that it uses.
+/// A detector of a scene of bars finds what all pairs do; returns the width of the cells that it uses in the end.
 template <class Space>
 double cells_for_bars(Space space, io::bars_in layout, double slender, double reach, bool radius_is_known,
-                      std::size_t triangles = 3000) {
+                      std::size_t triangles = 3000, int queries = 1) {
   io::scene const s = io::bars_scene(layout, slender, reach, 4000, triangles, 0);
   std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()), centres(s.centres.begin(), s.centres.end());
   auto const mesh = collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count());
@@ -28,7 +28,7 @@ double cells_for_bars(Space space, io::bars_in layout, double slender, double re
   collide::detector<collide::automatic, collide::karabassi<>, Space> chooses(space);
   radius_is_known ? chooses.build(mesh, radius) : chooses.build(mesh);
   collide::pairs found(collide::order::canonical), expected(collide::order::canonical);
-  chooses.query(balls, found);
+  for (int i = 0; i < queries; ++i) chooses.query(balls, found);
   plain.query(balls, expected);
   CHECK(expected.size() > 1000);
   CHECK(found.to_host() == expected.to_host());
@@ -45,8 +45,37 @@ TEST_CASE("automatic: a tree for long thin triangles that few spheres touch, a g
   }
   // the grid knows of them, and has narrow cells
   CHECK(cells_for_bars(collide::host(1), io::bars_in::tube, 1000, 0.5, true, 40000) > 0);
+  // a tree takes more than a query saves, and less than three do
+  CHECK(cells_for_bars(collide::host(1), io::bars_in::tube, 1000, 0.5, false) > 0);
+  CHECK(cells_for_bars(collide::host(1), io::bars_in::tube, 1000, 0.5, false, 3000, 4) == 0);
   // where trees are those of devices there is none
   CHECK(cells_for_bars(tests::lockstep<64, true>(1), io::bars_in::shaft, 100, 0.1, false) > 0);
+}
+
+TEST_CASE("automatic: a first query tests all pairs where that takes less than to build a grid, on the host") {
+  struct row {
+    std::size_t triangles, spheres;
+    bool has_grid;
+  };
+  // as measured: docs/development/experiments.md
+  for (row const& r : {row{18, 30, false},
+                       {18, 300, true},
+                       {1008, 10, false},
+                       {1008, 300, true},
+                       {3136, 113, true},
+                       {16464, 10, false},
+                       {16464, 300, true},
+                       {13924, 182, true}}) {
+    CAPTURE(r.triangles);
+    CAPTURE(r.spheres);
+    io::scene const s = io::study_scene(r.spheres, r.triangles);
+    std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()),
+        centres(s.centres.begin(), s.centres.end());
+    collide::detector<collide::automatic> detector(collide::host(1));
+    detector.build(collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count()));
+    detector.query(collide::spheres_xyz(centres.data(), r.spheres, 3), collide::count());
+    CHECK((detector.cell_width() > 0) == r.has_grid);
+  }
 }
 
 TEST_CASE("automatic: small scenes have the same pairs by whichever way, on the host") {

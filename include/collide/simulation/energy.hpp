@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <collide/effects/contact_work.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/sphere_contact.hpp>
@@ -23,8 +24,15 @@ struct energy_sums {
   double elastic = 0;     ///< of the normal springs of `sphere_contact` and `granular_contact`, those at the mesh too
   double potential = 0;   ///< in `gravity`, 0 at the origin
   double tangential = 0;  ///< of the springs of `mindlin`, as spheres last met each other and the mesh
+  double damping = 0;     ///< lost along normals since the springs were relaxed, what the step makes of springs too
+  double sliding = 0;     ///< lost to sliding, and to the dashpots along the surface
+  double rolling = 0;     ///< lost to rolling and torsion, and held by springs against them
+  double given = 0;       ///< work that walls have done on particles
 
-  double total() const { return kinetic + rotational + elastic + potential + tangential; }  ///< the sum of all
+  double total() const { return kinetic + rotational + elastic + potential + tangential; }  ///< of energies
+  double lost() const { return damping + sliding + rolling; }                               ///< all that is
+  /// The sum that stays the same where only contacts, walls and `gravity` act on particles.
+  double balance() const { return total() + lost() - given; }
 };
 
 /// The result of `contact_report` on the contacts between spheres.
@@ -170,17 +178,16 @@ using spring_energy_call =
     decltype(std::declval<Law const&>().energy(std::declval<P const&>(), std::declval<contact_material const&>(),
                                                std::declval<N const&>(), std::declval<Memory const&>()));
 
-/// The energy of the tangential springs between spheres, of which both of a pair know. 0 if the law has none.
-template <class Law, class Detector, class... Effect>
-double tangential_energy(Law const& law, simulation<Detector, Effect...> const& of,
-                         particles_on_host<Detector, Effect...> const& all) {
-  using remembered = typename simulation<Detector, Effect...>::effects_type::remembered;
-  using record_type = contact_record<double, remembered>;
-  using values_type = contact_values<double, remembered>;
-  using memory_type = contact_access<remembered, values_type, double>;
-  double sum = 0;
-  if constexpr (is_valid<spring_energy_call, decltype(law.tangential), granular_pair<double>, normal_force<double>,
-                         memory_type>) {
+/// f(i, k, what the contact remembers) for each two that touch, of a law. Of a law that remembers nothing 0.
+template <class Law, class Detector, class... Effect, class F>
+void for_each_contact_of(simulation<Detector, Effect...> const& of, particles_on_host<Detector, Effect...> const& all,
+                         F const& f) {
+  if constexpr (Law::is_memoryless) {
+    all.for_each_contact([&](std::size_t i, std::size_t k, double) { f(i, k, 0); });
+  } else {
+    using remembered = typename simulation<Detector, Effect...>::effects_type::remembered;
+    using record_type = contact_record<double, remembered>;
+    using values_type = contact_values<double, remembered>;
     auto const saved = checkpoint<Detector, Effect...>::contacts_between_particles(of);
     std::size_t at = 0;
     for (std::size_t i = 0; i < saved.counts.size(); ++i) {
@@ -191,14 +198,28 @@ double tangential_energy(Law const& law, simulation<Detector, Effect...> const& 
         for (std::size_t w = 0; w < std::size_t(values_type::width); ++w)
           record.numbers[w] = static_cast<double>(saved.values[at * std::size_t(values_type::width) + w]);
         values_type values = record.values();
-        granular_pair<double> const p = all.pair_of(i, k, all.overlap_of(i, k));
-        auto const& m = law.made_of.between(all.solid_of(i), all.solid_of(k));
-        memory_type const memory(values, 0);
-        normal_force<double> force = law.normal.force(p, m);
-        law.cohesion.pull(force, p, m, memory);
-        sum += law.tangential.energy(p, m, force, memory);
+        f(i, k, contact_access<typename Law::remembers::list, values_type, double>(values, 0));
       }
     }
+  }
+}
+
+/// The energy of the tangential springs between spheres, of which both of a pair know. 0 if the law has none.
+template <class Law, class Detector, class... Effect>
+double tangential_energy(Law const& law, simulation<Detector, Effect...> const& of,
+                         particles_on_host<Detector, Effect...> const& all) {
+  using values_type = contact_values<double, typename simulation<Detector, Effect...>::effects_type::remembered>;
+  using memory_type = contact_access<typename Law::remembers::list, values_type, double>;
+  double sum = 0;
+  if constexpr (is_valid<spring_energy_call, decltype(law.tangential), granular_pair<double>, normal_force<double>,
+                         memory_type>) {
+    for_each_contact_of<Law>(of, all, [&](std::size_t i, std::size_t k, auto const& memory) {
+      granular_pair<double> const p = all.pair_of(i, k, all.overlap_of(i, k));
+      auto const& m = law.made_of.between(all.solid_of(i), all.solid_of(k));
+      normal_force<double> force = law.normal.force(p, m);
+      law.cohesion.pull(force, p, m, memory);
+      sum += law.tangential.energy(p, m, force, memory);
+    });
   }
   return sum;
 }
@@ -285,9 +306,10 @@ struct mesh_contacts_of {
 /// The energy of all particles that are alive, those that sleep included; NaN if one is nowhere. With
 /// `semi_implicit_euler` velocities are those of half a step before the positions, and the sum goes up and down with
 /// them. `density` is the mass per volume, 0 that of `granular_contact`'s materials or of `sphere_contact`; `error` if
-/// there is none, or it is not above 0 and finite. What springs against rolling and cohesion hold is not in it. Of
-/// `local()` of ranks it is that of the rank's own particles, without springs to those of others. Waits, and copies
-/// columns to the host. O(n log n), and the pairs that are near along x.
+/// there is none, or it is not above 0 and finite. What springs against rolling and cohesion hold is not in it. In a
+/// scene with `contact_work` the work is there too, that was lost and given. Of `local()` of ranks it is that of the
+/// rank's own particles, without springs to those of others. Waits, and copies columns to the host. O(n log n), and the
+/// pairs that are near along x.
 template <class Detector, class... Effect>
 energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0) {
   using law_type = typename detail::granular_of<Effect...>::type;
@@ -313,11 +335,11 @@ energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0
     sum.rotational += 0.2 * m * r * r * all.at(all.w, i).squaredNorm();
     sum.potential -= m * vec3<double>(field.x, field.y, field.z).dot(all.at(all.x, i));
   }
-  if (!is_granular && !(springs.stiffness > 0)) return sum;
-  all.for_each_contact([&](std::size_t i, std::size_t k, double overlap) {
-    sum.elastic += 0.5 * springs.stiffness * overlap * overlap;
-    if constexpr (is_granular) sum.elastic += elastic_energy(of.template effect<law_type>(), all, i, k, overlap);
-  });
+  if (is_granular || springs.stiffness > 0)
+    all.for_each_contact([&](std::size_t i, std::size_t k, double overlap) {
+      sum.elastic += 0.5 * springs.stiffness * overlap * overlap;
+      if constexpr (is_granular) sum.elastic += elastic_energy(of.template effect<law_type>(), all, i, k, overlap);
+    });
   if constexpr (is_granular) {
     law_type const& law = of.template effect<law_type>();
     sum.tangential = tangential_energy(law, of, all);
@@ -328,6 +350,18 @@ energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0
       sum.elastic += at_mesh[i].elastic;
       sum.tangential += at_mesh[i].tangential;
     }
+  }
+  if constexpr (detail::contains<typename simulation<Detector, Effect...>::columns, normal_work>) {
+    auto const sum_of = [&](auto column) {
+      std::vector<double> const work = of.template to_host<decltype(column)>();
+      double found = 0;
+      for (std::size_t i = 0; i < work.size(); ++i) found += all.is_there[i] != 0 ? work[i] : 0;
+      return found;
+    };
+    sum.damping = sum_of(normal_work{}) - sum.elastic;
+    sum.sliding = sum_of(sliding_work{}) - sum.tangential;
+    sum.rolling = sum_of(rolling_work{});
+    sum.given = sum_of(wall_work{});
   }
   return sum;
 }

@@ -109,45 +109,29 @@ struct load_of_mesh {
 };
 
 /// f(i, k, from k to i, force on i) for each two grains of a simulation that touch: the law's forces where grains are.
-template <class Law, class Detector, class... Effect, class F>
-void for_each_force(Law const& law, simulation<Detector, Effect...> const& of,
-                    particles_on_host<Detector, Effect...> const& all, F const& f) {
-  using remembered = typename simulation<Detector, Effect...>::effects_type::remembered;
+template <class Detector, class... Effect, class F>
+void for_each_force(simulation<Detector, Effect...> const& of, particles_on_host<Detector, Effect...> const& all,
+                    F const& f) {
+  using law_type = typename granular_of<Effect...>::type;
+  static_assert(is_granular<law_type>, "collide: stress is that of granular_contact: name it in the scene");
+  law_type const& law = of.template effect<law_type>();
   auto const grain_of = [&](std::size_t i) {
     return lone_grain<double>{all.radius_of(i), all.at(all.x, i), all.at(all.v, i), all.at(all.w, i), all.solid[i], i};
   };
-  auto const meet = [&](std::size_t i, std::size_t k, [[maybe_unused]] auto const& memory) {
+  for_each_contact_of<law_type>(of, all, [&](std::size_t i, std::size_t k, [[maybe_unused]] auto const& memory) {
     lone_grain<double> const own = grain_of(i);
     lone_grain<double> other = grain_of(k);
     vec3<double> const branch = -all.between(i, k);
     other.x = own.x - branch;
     lone_grain<double> pushed = own;
-    if constexpr (Law::is_memoryless) {
+    if constexpr (law_type::is_memoryless) {
       law.on_pair_contact(pushed, own, other, 1.0);
     } else {
       law.on_pair_contact(pushed, own, other, memory, 1.0);
     }
     double const mass = sphere_mass(law.made_of.template density_of<double>(own), own.its_radius);
     f(i, k, branch, vec3<double>((pushed.v - own.v) * mass));
-  };
-  if constexpr (Law::is_memoryless) {
-    all.for_each_contact([&](std::size_t i, std::size_t k, double) { meet(i, k, 0); });
-  } else {
-    using record_type = contact_record<double, remembered>;
-    using values_type = contact_values<double, remembered>;
-    auto const saved = checkpoint<Detector, Effect...>::contacts_between_particles(of);
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < saved.counts.size(); ++i)
-      for (std::uint32_t n = 0; n < saved.counts[i]; ++n, ++at) {
-        std::size_t const k = all.place_of(saved.others[at]);
-        if (k == all.r.size() || k < i || all.is_there[i] == 0 || all.is_there[k] == 0) continue;
-        record_type record;
-        for (std::size_t w = 0; w < std::size_t(values_type::width); ++w)
-          record.numbers[w] = static_cast<double>(saved.values[at * std::size_t(values_type::width) + w]);
-        values_type values = record.values();
-        meet(i, k, contact_access<typename Law::remembers::list, values_type, double>(values, 0));
-      }
-  }
+  });
 }
 
 /// Sums of fields, of which kernels say how much of a grain, and of a line between two, counts at a point.
@@ -185,15 +169,13 @@ struct field_sums {
 template <class Detector, class... Effect, class Sink>
 void for_each_load(simulation<Detector, Effect...> const& of, Sink& sink) {
   using law_type = typename granular_of<Effect...>::type;
-  static_assert(is_granular<law_type>, "collide: stress is that of granular_contact: name it in the scene");
   law_type const& law = of.template effect<law_type>();
   particles_on_host<Detector, Effect...> const all(of);
   auto loads = mesh_contacts_of<Detector, Effect...>::template sums<mesh_load>(of, load_of_mesh<law_type>{law});
-  for_each_force(law, of, all,
-                 [&](std::size_t i, std::size_t k, vec3<double> const& branch, vec3<double> const& force) {
-                   ++loads[i].contacts, ++loads[k].contacts;
-                   sink.line(all.at(all.x, i), branch, force);
-                 });
+  for_each_force(of, all, [&](std::size_t i, std::size_t k, vec3<double> const& branch, vec3<double> const& force) {
+    ++loads[i].contacts, ++loads[k].contacts;
+    sink.line(all.at(all.x, i), branch, force);
+  });
   for (std::size_t i = 0; i < of.size(); ++i) {
     if (all.is_there[i] == 0) continue;
     double const volume = sphere_mass(1.0, all.radius_of(i));
@@ -279,6 +261,19 @@ struct grid_sink {
 };
 
 }  // namespace detail
+
+/// The force along the normal of each contact between grains, of a scene with `granular_contact`, below 0 where it
+/// pulls: over their mean they have the distribution of forces. Forces are those where grains are, with velocities as
+/// they are. Waits, and copies columns to the host. O(n log n).
+template <class Detector, class... Effect>
+std::vector<double> normal_forces(simulation<Detector, Effect...> const& of) {
+  std::vector<double> found;
+  detail::for_each_force(of, detail::particles_on_host<Detector, Effect...>(of),
+                         [&](std::size_t, std::size_t, vec3<double> const& branch, vec3<double> const& force) {
+                           found.push_back(force.dot(branch.normalized()));
+                         });
+  return found;
+}
 
 /// The means of fields in a box, of a scene with `granular_contact`: grains count where their centres are, forces by
 /// the part of the line between centres that is in the box, those of the mesh where the grain's centre is. Forces are

@@ -305,10 +305,12 @@ class Simulation:
         return self._simulation.largest_time_step(self._stream())
 
     def energy(self, density: float = 0) -> Dict[str, float]:
-        """Kinetic, rotational, elastic and potential energy, and that of tangential springs. ``density`` is mass per
-        volume, 0 that of the effect by which particles meet. Waits; O(n), O(n log n) where particles meet."""
+        """Kinetic, rotational, elastic and potential energy, and that of tangential springs; with `contact_work`, also the
+        work lost to damping, sliding and rolling, and that given by walls. ``density`` is mass per volume, 0 that of
+        the effect by which particles meet. Waits; O(n), O(n log n) where particles meet."""
         of_all = self._simulation.energy(self._stream(), real("density", density))
-        return dict(zip(("kinetic", "rotational", "elastic", "potential", "tangential"), of_all))
+        names = "kinetic rotational elastic potential tangential damping sliding rolling given"
+        return dict(zip(names.split(), of_all))
 
     def contacts(self) -> Array:
         """(n, 2) int32, sorted: pairs of particles that touch, the smaller number first. Exact; not across the sides of

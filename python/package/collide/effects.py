@@ -232,6 +232,12 @@ def wear(unit_of_impulse: float, unit_of_work: float, density: float = 1) -> Eff
     work of friction there: `Simulation.sums`. Each contact is rounded to the units; ``density``: mass per volume."""
 
 
+@_describes(Effect, type="contact_work<>", density="made_of.density")
+def contact_work(density: float = 1, arm_shortening: float = 0.5) -> Effect:
+    """Sums up the work of contacts of `granular_contact` or `sphere_contact`, before it in the list: `Simulation.energy` has
+    what was lost, and given by walls. ``density``: mass per volume; ``arm_shortening`` as of `granular_contact`."""
+
+
 @_describes(Effect, memory="sums.hpp")
 def reaction(unit: float, density: float = 1, triangles: bool = False) -> Effect:
     """Sums up what particles give to bodies and to what rests, and to each triangle if asked, last in the list:
@@ -256,5 +262,6 @@ def velocity_verlet() -> Effect:
 __all__ = [  # all functions above, as words for type checkers
     "gravity", "drag", "external_forces", "wind", "bounce", "friction", "spin", "adhesion", "sphere_contact",
     "sleep", "emit", "absorb", "absorbing_box", "box_walls", "periodic_box", "polydisperse", "lost", "lost_motion",
-    "mesh_forces", "pair_forces", "mass_flow", "reaction", "wear", "moving_bodies", "driven_bodies", "velocity_verlet",
+    "mesh_forces", "pair_forces", "mass_flow", "reaction", "wear", "contact_work", "moving_bodies", "driven_bodies",
+    "velocity_verlet",
 ]

@@ -1,4 +1,6 @@
 /// Stress and fields of grains, against closed forms: two spheres, a box under its own weight, a sheared cell.
+#include <algorithm>
+
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/effects/wear.hpp>
@@ -41,6 +43,7 @@ TEST_CASE("stress: two spheres that press each other, and what they carry along"
   CHECK(f.velocity[0] == doctest::Approx(2));
   CHECK(f.density == doctest::Approx(2 * mass));
   CHECK(f.coordination == doctest::Approx(1));
+  CHECK(collide::normal_forces(made.simulation)[0] == doctest::Approx(k * 0.01));
   // of half of the line, in which there is one sphere
   auto const half = collide::stress(made.simulation, {0, 0, 0}, {0.495, 1, 1});
   CHECK(half.contact_stress[0][0] == doctest::Approx(k * 0.01 * 0.095 / 0.495));
@@ -57,6 +60,22 @@ TEST_CASE("stress: two spheres that press each other, and what they carry along"
   CHECK(density == doctest::Approx(2 * mass).epsilon(2e-3));
   CHECK(flux == doctest::Approx(4 * mass).epsilon(2e-3));
   CHECK_THROWS_AS(collide::stress(made.simulation, {0, 0, 0}, {1, 0, 1}), collide::error);
+}
+
+TEST_CASE("normal_forces: in a stack each sphere carries those above") {
+  using law = collide::granular_contact<collide::hertz>;
+  double const r = 0.01, weight = 2500 * 4 * pi / 3 * r * r * r * 9.81;
+  world<double> w;
+  w.radius = r;
+  tests::add_floor(w, 1, 3);
+  for (int k = 0; k < 4; ++k) w.particle(0, 0, r * (2 * k + 1));
+  running<simulation<gravity, law, collide::velocity_verlet>> made(
+      collide::host(1), w, gravity{}, law{collide::one_material({1e6, 0.2, 2500}, {0.2})}, collide::velocity_verlet{});
+  made.simulation.steps(20000, 5e-5);
+  std::vector<double> forces = collide::normal_forces(made.simulation);
+  std::sort(forces.begin(), forces.end());
+  REQUIRE(forces.size() == 3);
+  for (int k = 0; k < 3; ++k) CHECK(forces[k] == doctest::Approx((k + 1) * weight).epsilon(1e-6).scale(0));
 }
 
 TEST_CASE("stress: a box under its own weight carries what is above, on smooth walls") {

@@ -79,20 +79,22 @@ struct broad_phase_cost_model {
   double per_sphere_ns;       ///< `bucket`: a sphere
   double per_triangle_ns;     ///< `bucket`: a triangle of the build
   double build_ns;            ///< `bucket`: the build, however small the mesh
+  double per_bound_ns = 0;    ///< `all_pairs`: a triangle of the build
+  double together = 1;        ///< `all_pairs`: as many spheres take as long as one
 };
 
 /// Costs of queries of long thin triangles, in nanoseconds, on one core of an AMD EPYC; only the ratios count.
 struct slender_cost_model {
-  double per_box_ns;       ///< `bucket`: a sphere and a triangle whose box it reaches, and which is in its cell
-  double per_sphere_ns;    ///< `bvh`: a sphere
-  double per_touched_ns;   ///< `bvh`: a sphere and a triangle that it touches
-  double per_piece_ns;     ///< `bvh`: a sphere and a triangle of which it reaches but the box of a piece
-  double per_triangle_ns;  ///< `bvh`: a triangle of the build
+  double per_box_ns;          ///< `bucket`: a sphere and a triangle whose box it reaches, and which is in its cell
+  double per_sphere_ns;       ///< `bvh`: a sphere
+  double per_touched_ns;      ///< `bvh`: a sphere and a triangle that it touches
+  double per_piece_ns;        ///< `bvh`: a sphere and a triangle of which it reaches but the box of a piece
+  double per_built_piece_ns;  ///< `bvh`: a piece of the build
 };
 
 /// By what `automatic` chooses between `bucket` and `bvh` where triangles are long and thin. It does so in spaces where
 /// `bvh` divides by area.
-inline constexpr slender_cost_model slender_costs{12, 250, 200, 40, 5000};
+inline constexpr slender_cost_model slender_costs{16, 200, 80, 38, 350};
 /// By what it chooses in a simulation, for its steps, however long the build takes.
 inline constexpr slender_cost_model slender_costs_of_steps{50, 500, 400, 0, 0};
 
@@ -100,7 +102,7 @@ inline constexpr slender_cost_model slender_costs_of_steps{50, 500, 400, 0, 0};
 template <class Space>
 struct broad_phase_costs {
   static constexpr broad_phase_cost_model value = Space::host_accessible
-                                                      ? broad_phase_cost_model{350, 0.137, 4, 40, 1000}
+                                                      ? broad_phase_cost_model{350, 0.137, 4, 23, 20000, 13, 64}
                                                       : broad_phase_cost_model{0, 1.9, 0.012, 0.1, 30000};
 };
 

@@ -149,13 +149,14 @@ struct compute_boxes {
   }
 };
 
-/// Kernel functor of a block of one thread: the histogram of the finite, valid radii.
+/// Kernel functor of a block of one thread: the histogram of the finite, valid radii of every `stride`-th sphere.
 template <class S>
 struct measure_radii {
   static constexpr int items = 4;
   static constexpr std::size_t share = 4096;  ///< spheres of a block
 
   sphere_view<S> spheres;
+  std::size_t stride;
   size_histogram* histogram;
 
   /// How many blocks there are.
@@ -171,7 +172,7 @@ struct measure_radii {
     static_assert(Block::num_threads == 1, "collide: radii are measured by blocks of one thread");
     s.radii.clear();
     std::size_t const begin = block.index() * share, end = min(begin + share, spheres.size());
-    for (std::size_t i = begin; i < end; ++i) {
+    for (std::size_t i = (begin + stride - 1) / stride * stride; i < end; i += stride) {
       S const r = spheres.radius(i);
       if (is_valid_radius(r) && is_finite(r)) s.radii.add(size_bin(r > 0 ? r : S(0)), 1, 0);
     }
@@ -179,19 +180,17 @@ struct measure_radii {
   }
 };
 
-/// The histogram of the finite, valid radii. Waits.
+/// Puts the histogram of the finite, valid radii of every `stride`-th sphere into memory of the space.
 template <class S, class Space>
-size_histogram histogram_of_radii(Space& space, sphere_view<S> const& spheres, buffer<size_histogram>& memory) {
-  auto* const radii = memory.reserve(space.resource(), 1);
-  size_histogram::clear(space, radii);
+void measure_radii_of(Space& space, sphere_view<S> const& spheres, std::size_t stride, size_histogram* to) {
+  size_histogram::clear(space, to);
   if constexpr (bucket_tuning<Space>::bins_spheres) {
-    measure_radii<S> const kernel{spheres, radii};
+    measure_radii<S> const kernel{spheres, stride, to};
     space.launch(kernel.blocks(), kernel);
   } else {
-    radius_histogram_kernel<S> const kernel{spheres, radii};
-    space.launch(grid_size<Space>(spheres.size(), kernel), kernel);
+    radius_histogram_kernel<S> const kernel{spheres, stride, to};
+    space.launch(grid_size<Space>((spheres.size() + stride - 1) / stride, kernel), kernel);
   }
-  return space.read(radii);
 }
 
 }  // namespace collide::detail

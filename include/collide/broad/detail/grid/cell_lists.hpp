@@ -51,6 +51,18 @@ struct fill_entries {
   }
 };
 
+/// Grids in memory of a space.
+template <class S>
+struct planned_grids {
+  grid<S> const* data;
+  int count;
+  std::uint32_t table_bits;  ///< log2 of the number of cells per grid
+  std::size_t cells;         ///< of all grids
+  bool const* are_new;       ///< points to false if the triangles are in them; null: they are not
+
+  COLLIDE_HD_INLINE bool are_entered() const { return are_new != nullptr && !*are_new; }
+};
+
 /// Kernel functor: counts or fills, with `Pass`, the cells of triangles. A thread enters a triangle that meets few
 /// cells at once; the slabs of the others are spread evenly over the threads.
 template <class S, class Pass>
@@ -62,8 +74,7 @@ struct enter_triangles {
 
   mesh_view<S> mesh;
   triangle_aabb<S> const* boxes;  ///< null if there was no room for them
-  grid<S> const* grids;
-  int grid_count;
+  planned_grids<S> grids;
   Pass pass;
   std::size_t per_block;  ///< triangles: at most `Block::num_threads`
 
@@ -84,18 +95,19 @@ struct enter_triangles {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    for (int g = 0; g < grid_count; ++g) {
-      if (grids[g].levels == 0) continue;
+    if (grids.are_entered()) return;
+    for (int g = 0; g < grids.count; ++g) {
+      if (grids.data[g].levels == 0) continue;
       block.for_each_thread([&](int thread_rank) {
         if (thread_rank == 0) s.count = 0;
       });
       block.for_each_thread([&](int thread_rank) {
         auto const k = static_cast<std::size_t>(thread_rank);
         std::size_t const i = block.index() * per_block + k;
-        if (k < per_block && i < mesh.size()) enter_if_small(block, s, grids[g], static_cast<id>(i));
+        if (k < per_block && i < mesh.size()) enter_if_small(block, s, grids.data[g], static_cast<id>(i));
       });
       std::uint32_t const large = block.broadcast(s.count);
-      if (large != 0) enter_slabs(block, s, grids[g], large);
+      if (large != 0) enter_slabs(block, s, grids.data[g], large);
     }
   }
 
@@ -167,10 +179,8 @@ template <class S>
 struct allocate_entries {
   static constexpr int items = 8;  ///< cells of a thread: their bits are a byte
 
-  grid<S> const* grids;
-  std::uint32_t table_bits;
-  std::size_t cell_count;  ///< of all grids
-  item_range* cells;       ///< aligned to 16 bytes
+  planned_grids<S> grids;
+  item_range* cells;  ///< aligned to 16 bytes
   std::uint8_t* occupied;
   std::uint32_t* total;  ///< 0 at first
 
@@ -184,18 +194,20 @@ struct allocate_entries {
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::items % items == 0, "collide: bits of cells are written byte by byte");
+    if (grids.are_entered()) return;
     constexpr auto n = static_cast<std::size_t>(Block::items);
     std::size_t const first = block.index() * Block::num_threads * n;
-    std::size_t const table = std::size_t{1} << table_bits;
+    std::size_t const table = std::size_t{1} << grids.table_bits;
     // a part of the table that the grid does not need; its lists are read all the same, to wait for both at once
-    bool const needless = table >= Block::num_threads * n && (first & (table - 1)) >= grids[first >> table_bits].cells;
+    bool const needless =
+        table >= Block::num_threads * n && (first & (table - 1)) >= grids.data[first >> grids.table_bits].cells;
     typename Block::template thread_private<counts_of<Block>> own;
     auto const first_of = [&](int thread_rank) { return first + static_cast<std::size_t>(thread_rank) * n; };
     block.for_each_thread([&](int thread_rank) {
       std::uint32_t sum = 0;
       for (std::size_t k = 0; k < n; k += 2) {
         std::size_t const c = first_of(thread_rank) + k;
-        auto const [a, b] = c < cell_count ? two_at(c) : two_lists{};
+        auto const [a, b] = c < grids.cells ? two_at(c) : two_lists{};
         own[thread_rank].counts[k] = a.count;
         own[thread_rank].counts[k + 1] = b.count;
         sum += a.count + b.count;
@@ -211,7 +223,7 @@ struct allocate_entries {
       std::uint32_t begin = s.begin + s.sums[thread_rank];
       for (std::size_t k = 0; k < n; k += items) {
         std::size_t const c = first_of(thread_rank) + k;
-        if (c >= cell_count) break;
+        if (c >= grids.cells) break;
         std::uint32_t bits = 0;
         for (std::uint32_t i = 0; i < items; i += 2) {
           std::uint32_t const a = own[thread_rank].counts[k + i], b = own[thread_rank].counts[k + i + 1];
@@ -235,15 +247,6 @@ struct allocate_entries {
   struct counts_of {
     std::uint32_t counts[Block::items];
   };
-};
-
-/// Grids in memory of a space.
-template <class S>
-struct planned_grids {
-  grid<S> const* data;
-  int count;
-  std::uint32_t table_bits;  ///< log2 of the number of cells per grid
-  std::size_t cells;         ///< of all grids
 };
 
 /// The entries of all cells, and where those of each cell are.
@@ -273,10 +276,10 @@ class cell_lists {
     auto const pass_over = [&](auto const& pass) {
       using kernel = enter_triangles<S, std::decay_t<decltype(pass)>>;
       std::size_t const share = kernel::triangles_of_block(n, Space::template block<kernel>::num_threads);
-      space.launch((n + share - 1) / share, kernel{mesh, boxes, grids.data, grids.count, pass, share});
+      space.launch((n + share - 1) / share, kernel{mesh, boxes, grids, pass, share});
     };
     pass_over(count_entries{lists});
-    allocate_entries<S> const allocation{grids.data, grids.table_bits, cells_, lists, occupied(), &lists[cells_].count};
+    allocate_entries<S> const allocation{grids, lists, occupied(), &lists[cells_].count};
     space.launch(grid_size<Space>(cells_, allocation), allocation);
     std::size_t const capacity = asks ? std::min<std::size_t>(space.read(total()), limit) : limit;
     entries_.reserve(space.resource(), capacity);

@@ -41,15 +41,13 @@ struct memory_plan {
 
   /// Plans as many of `wanted` grids as fit into `budget` bytes, of which `fixed` are taken, and then as many cells as
   /// fit. No grids if none fits. A budget of 0 is no limit. A given width of the cells may make many more entries. Few
-  /// spheres do not pay for cells of each of many triangles, unless the grid serves many steps; many
-  /// spheres pay for `cells_of_few` of few triangles.
+  /// spheres do not pay for cells of each of many triangles, unless the grid serves many steps.
   static memory_plan make(std::size_t triangles, std::size_t spheres, int wanted, bool width_is_given,
-                          std::size_t fixed, std::size_t budget, bool serves_steps = false,
-                          std::size_t cells_of_few = 0) {
+                          std::size_t fixed, std::size_t budget, bool serves_steps = false) {
     std::uint32_t max_bits = 12;
-    std::size_t const cells = std::max({serves_steps ? triangles : std::min(triangles, spheres),
-                                        std::min(4 * triangles, std::size_t{1} << 18),
-                                        std::min(spheres / 16, std::max(16 * triangles, cells_of_few))});
+    std::size_t const cells =
+        std::max({serves_steps ? triangles : std::min(triangles, spheres),
+                  std::min(4 * triangles, std::size_t{1} << 18), std::min(spheres / 16, 16 * triangles)});
     while (max_bits < 28 && (std::size_t{1} << max_bits) < cells) ++max_bits;
     for (int g = wanted; g > 0; --g) {
       auto const grids = static_cast<std::size_t>(g);

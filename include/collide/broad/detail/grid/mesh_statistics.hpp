@@ -120,12 +120,13 @@ S largest_coordinate(Space& space, mesh_view<S> const& mesh, buffer<mesh_statist
   return space.read(seen).largest_coordinate();
 }
 
-/// Kernel functor: the histogram of the finite, valid radii.
+/// Kernel functor: the histogram of the finite, valid radii of every `stride`-th sphere.
 template <class S>
 struct radius_histogram_kernel {
   static constexpr int items = 4;
 
   sphere_view<S> spheres;
+  std::size_t stride;
   size_histogram* histogram;
 
   template <class Block>
@@ -141,8 +142,8 @@ struct radius_histogram_kernel {
       for (int k = 0; k < Block::items; ++k) {
         std::size_t const i =
             first + static_cast<std::size_t>(k) * Block::num_threads + static_cast<std::size_t>(thread_rank);
-        if (i >= spheres.size()) break;
-        S const r = spheres.radius(i);
+        if (i * stride >= spheres.size()) break;
+        S const r = spheres.radius(i * stride);
         if (is_valid_radius(r) && is_finite(r)) s.histogram.add(block, histogram, size_bin(r > 0 ? r : S(0)), 0);
       }
     });
@@ -150,24 +151,72 @@ struct radius_histogram_kernel {
   }
 };
 
-/// How far the grids of spheres of many radii reach: reaches a factor of 4 or more apart, falling, down to one that is
-/// at most `enough`, and the first for all, each of the others for more than `fewest` spheres. Returns how many there
-/// are.
+/// How far the grids of an index reach.
 template <class S>
-int reaches_of(size_histogram const& radii, S enough, std::size_t fewest, S (&reaches)[max_grids]) {
-  if (radii.empty()) return 0;
-  constexpr int bins_per_factor_4 = 8;
-  std::size_t left = 0;  // spheres of this bin and of smaller ones
-  for (int b = radii.first(); b <= radii.last(); ++b) left += radii.counts[b];
-  int n = 0, next = radii.last();
-  for (int b = radii.last(); b >= radii.first() && n < max_grids; left -= radii.counts[b--]) {
-    if (b > next || radii.counts[b] == 0 || (n != 0 && left <= fewest)) continue;
-    float const end = bin_end(static_cast<std::uint32_t>(b));
-    reaches[n++] = static_cast<S>(min(end, std::numeric_limits<float>::max()));
-    if (reaches[n - 1] <= enough) break;
-    next = b - bins_per_factor_4;
+struct grid_reaches {
+  S reaches[max_grids];  ///< falling; -1 behind the last
+  int count;
+  bool are_new;  ///< the grids must be made: they are not those of the query before
+};
+
+/// Kernel functor of one block: chooses how far the grids of spheres of many radii reach. The reaches are a factor of 4
+/// or more apart, down to one that is at most `enough`; the first is for all spheres, each of the others for more than
+/// `fewest` spheres of the histogram. Of no spheres there is one of 0.
+template <class S>
+struct choose_reaches {
+  static constexpr int items = 1;
+
+  size_histogram const* radii;
+  grid_reaches<S>* chosen;  ///< in: those that are there, unless all are made anew
+  S largest;                ///< the first reach; negative: that of the largest sphere
+  S enough;
+  std::uint64_t fewest;
+  int max_count;  ///< reaches
+  bool makes_anew;
+
+  template <class>
+  struct scratch {
+    std::uint32_t counts[size_bins];
+  };
+
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    int const first = radii->empty() ? 0 : radii->first(), last = radii->empty() ? -1 : radii->last();
+    block.for_each_thread([&](int thread_rank) {
+      for (int b = first + thread_rank; b <= last; b += Block::num_threads) s.counts[b] = radii->counts[b];
+    });
+    block.for_each_thread([&](int thread_rank) {
+      if (thread_rank == 0) choose(s.counts, first, last);
+    });
   }
-  return n;
-}
+
+ private:
+  COLLIDE_HD void choose(std::uint32_t const* counts, int first, int last) const {
+    constexpr int bins_per_factor_4 = 8;
+    std::uint64_t left = 0;  // spheres of this bin and of smaller ones
+    COLLIDE_NO_UNROLL
+    for (int b = first; b <= last; ++b) left += counts[b];
+    grid_reaches<S> wanted{{}, 0, makes_anew};
+    int n = 0, next = last;
+    if (largest >= 0 || last < first) {
+      wanted.reaches[n++] = max(largest, S(0));
+      next = static_cast<int>(size_bin(wanted.reaches[0])) - bins_per_factor_4;
+    }
+    COLLIDE_NO_UNROLL
+    for (int b = last; b >= first && n < max_count; left -= counts[b--]) {
+      if (b > next || counts[b] == 0 || (n != 0 && left <= fewest)) continue;
+      if (n != 0 && wanted.reaches[n - 1] <= enough) break;
+      float const end = bin_end(static_cast<std::uint32_t>(b));
+      wanted.reaches[n++] = static_cast<S>(min(end, std::numeric_limits<float>::max()));
+      next = b - bins_per_factor_4;
+    }
+    wanted.count = n;
+    for (int g = 0; g < max_grids; ++g) {
+      if (g >= n) wanted.reaches[g] = -1;
+      wanted.are_new = wanted.are_new || wanted.reaches[g] != chosen->reaches[g];
+    }
+    *chosen = wanted;
+  }
+};
 
 }  // namespace collide::detail

@@ -77,14 +77,27 @@ struct level_cost {
 /// A request for grids.
 template <class S>
 struct grid_request {
-  S reaches[max_grids];  ///< falling
-  int count;
-  S cell_width;              ///< asked for; 0 = choose
-  bool whole_boxes;          ///< as `grid` has it
-  float entry_limit;         ///< how many entries a grid may have, about
-  std::uint32_t table_bits;  ///< log2 of the number of cells per grid
-  float spheres;             ///< of all queries to come
+  S reach;                        ///< of the only grid,
+  grid_reaches<S> const* chosen;  ///< or how far each reaches; null if there is one
+  int count;                      ///< the most grids
+  S cell_width;                   ///< asked for; 0 = choose
+  bool whole_boxes;               ///< as `grid` has it
+  float entry_limit;              ///< how many entries the grids may have, about
+  std::uint32_t table_bits;       ///< log2 of the number of cells per grid
+  float spheres;                  ///< of all queries to come
   bucket_costs costs;
+
+  /// False if the grids that are there serve.
+  COLLIDE_HD bool is_new() const { return chosen == nullptr || chosen->are_new; }
+
+  /// How many grids there are.
+  COLLIDE_HD int used() const { return chosen == nullptr ? 1 : min(chosen->count, count); }
+
+  /// How far grid `i` reaches; -1 if there is none.
+  COLLIDE_HD S reach_of(std::size_t i) const {
+    if (i >= static_cast<std::size_t>(count)) return -1;
+    return chosen != nullptr ? chosen->reaches[i] : (i == 0 ? reach : S(-1));
+  }
 };
 
 /// Cells, in units of the grid's extent.
@@ -149,6 +162,7 @@ struct plan_grid {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    if (!request.is_new()) return;
     if (block.index() >= static_cast<std::size_t>(request.count)) return empty_cells(block);
     auto& g = grids[block.index()];
     block.for_each_thread([&](int thread_rank) {
@@ -198,8 +212,8 @@ struct plan_grid {
   COLLIDE_HD grid_header<S> header_of(std::size_t i, S& extent) const {
     grid_header<S> g{};
     extent = 0;
-    g.reach = request.reaches[i];
-    if (summary->extents.empty()) {  // no finite triangle: a box that contains nothing
+    g.reach = request.reach_of(i);
+    if (summary->extents.empty() || g.reach < 0) {  // no finite triangle, or no grid: a box that contains nothing
       for (int k = 0; k < 3; ++k) {
         g.lower[k] = 1;
         g.upper[k] = -1;
@@ -232,8 +246,7 @@ struct plan_grid {
   template <class Block, class Scratch>
   COLLIDE_HD_INLINE void measure_distances(Block& block, Scratch& s) const {
     std::size_t const i = block.index();
-    S const reach = request.reaches[i],
-            above = i + 1 < static_cast<std::size_t>(request.count) ? request.reaches[i + 1] : S(-1);
+    S const reach = request.reach_of(i), above = request.reach_of(i + 1);
     S const scale = S(1) / s.extent;
     constexpr std::uint32_t pairs_of_sphere =
         Block::num_threads > 1 ? pair_distances::triangles / 4 : pair_distances::triangles;
@@ -309,15 +322,16 @@ struct plan_grid {
                       0.5f * exp2f(static_cast<float>(request.table_bits))};
       for (int k = 0; k < 3; ++k)
         cost.sides[k] = static_cast<float>((s.planned.upper[k] - s.planned.lower[k]) / s.extent);
+      float const entry_limit = request.entry_limit / static_cast<float>(request.used());
       best[thread_rank] = {unlimited, width_at(0), 0, 0};
       if (request.cell_width > 0) {
         float const asked = max(narrowest, static_cast<float>(request.cell_width / s.extent));
-        best[thread_rank].width = wide_enough(all, asked, cost.reach);
+        best[thread_rank].width = wide_enough(all, asked, cost.reach, entry_limit);
         return;
       }
       for (int i = thread_rank; i < widths + size_classes; i += Block::num_threads) {
         cell_choice const next =
-            i < widths ? of_width(all, width_at(i), request.entry_limit, cost) : of_split(s, i - widths, cost);
+            i < widths ? of_width(all, width_at(i), entry_limit, cost) : of_split(s, i - widths, entry_limit / 2, cost);
         best[thread_rank] = cell_choice::cheaper{}(best[thread_rank], next);
       }
     });
@@ -336,13 +350,13 @@ struct plan_grid {
   /// With the triangles of the larger classes, from the one after `c` on, in cells of their own. That must save more
   /// than a fifth.
   template <class Scratch>
-  COLLIDE_HD_INLINE cell_choice of_split(Scratch const& s, int c, level_cost const& cost) const {
+  COLLIDE_HD_INLINE cell_choice of_split(Scratch const& s, int c, float entry_limit, level_cost const& cost) const {
     bool const splits = c % 4 == 3 && c + 1 < size_classes && summary->extents.last() - summary->extents.first() >= 16;
     triangle_sums const small = sum_of(s, 0, splits ? c + 1 : 0), large = sum_of(s, c + 1, splits ? size_classes : 0);
     cell_choice best{unlimited, 0, 0, 0}, best_large = best;
     if (small.count > 0 && large.count > 0) {
-      best = cheapest(small, cost);
-      best_large = cheapest(large, cost);
+      best = cheapest(small, entry_limit, cost);
+      best_large = cheapest(large, entry_limit, cost);
     }
     bool const useful = best.cost < unlimited && best_large.cost < unlimited && best.width < best_large.width;
     float const both = 1.25f * (best.cost + best_large.cost + request.costs.level_ns * cost.spheres);
@@ -350,14 +364,14 @@ struct plan_grid {
   }
 
   /// The cheapest cells of one of two levels: of every fourth width, then of the widths near the best of these.
-  COLLIDE_HD_INLINE cell_choice cheapest(triangle_sums const& some, level_cost const& cost) const {
+  COLLIDE_HD_INLINE cell_choice cheapest(triangle_sums const& some, float entry_limit, level_cost const& cost) const {
     cell_choice best{unlimited, 0, 0, 0};
     int begin = 0, end = widths, around = 0;
     COLLIDE_NO_UNROLL
     for (int step = 4; step > 0; step -= 3) {
       COLLIDE_NO_UNROLL
       for (int i = begin; i < end; i += step) {
-        cell_choice const next = of_width(some, width_at(i), request.entry_limit / 2, cost);
+        cell_choice const next = of_width(some, width_at(i), entry_limit, cost);
         if (next.cost < best.cost) best = next, around = i;
       }
       begin = max(around - 3, 0), end = min(around + 4, widths);
@@ -393,9 +407,9 @@ struct plan_grid {
   }
 
   /// A width, or one that is so much larger that there are not too many entries.
-  COLLIDE_HD float wide_enough(triangle_sums const& all, float width, float reach) const {
+  COLLIDE_HD float wide_enough(triangle_sums const& all, float width, float reach, float entry_limit) const {
     COLLIDE_NO_UNROLL
-    while (width < 1.01f && !(all.entries(width, reach) <= request.entry_limit)) width *= 1.1f;
+    while (width < 1.01f && !(all.entries(width, reach) <= entry_limit)) width *= 1.1f;
     return width;
   }
 
