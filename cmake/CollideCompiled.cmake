@@ -2,8 +2,15 @@
 # include/collide/detectors/compiled.hpp. With COLLIDE_CUDA there is collide::compiled_cuda, which has those of the CUDA spaces, too.
 # Both are built where something links them, and collide::compiled by default if this is the project that is built.
 
-# compiled_source(RESULT TEMPLATE NAME): a source made of src/TEMPLATE.cpp.in, appended to the list RESULT
-function(compiled_source result template name)
+set(COLLIDE_COMPILED_BROAD_PHASES all_pairs bucket automatic CACHE STRING "Broad phases whose queries collide::compiled has")
+mark_as_advanced(COLLIDE_COMPILED_BROAD_PHASES)
+
+# compiled_source(RESULT TEMPLATE NAME MACRO SPACE): a source made of src/TEMPLATE.cpp.in, with a line of MACRO for each broad
+# phase, appended to the list RESULT
+function(compiled_source result template name macro macro_space)
+  foreach(broad_phase IN LISTS COLLIDE_COMPILED_BROAD_PHASES)
+    string(APPEND instances "${macro}(template, ${broad_phase}, ${macro_space}, ${scalar})\n")
+  endforeach()
   set(source ${CMAKE_CURRENT_BINARY_DIR}/compiled/${name}.cpp)
   configure_file(src/${template}.cpp.in ${source} @ONLY)
   set(${result} ${${result}} ${source} PARENT_SCOPE)
@@ -19,13 +26,11 @@ foreach(space IN LISTS compiled_spaces)
     set(of cuda_sources)
   endif()
   foreach(scalar IN ITEMS float double)
-    set(queries COLLIDE_ALL_AT_REST)
-    compiled_source(${of} queries at_rest_${space}_${scalar})
-    set(queries COLLIDE_ALL_IN_MOTION)
-    compiled_source(${of} queries in_motion_${space}_${scalar})
-    compiled_source(${of} lookups lookups_${space}_${scalar})
+    compiled_source(${of} queries at_rest_${space}_${scalar} COLLIDE_ALL_AT_REST ${space})
+    compiled_source(${of} queries in_motion_${space}_${scalar} COLLIDE_ALL_IN_MOTION ${space})
+    compiled_source(${of} lookups lookups_${space}_${scalar} COLLIDE_INDEX "detail::lookup_space<${space}>")
     if(space STREQUAL "host")  # on a device a step is one kernel
-      compiled_source(${of} searches searches_${scalar})
+      compiled_source(${of} searches searches_${scalar} "" "")
     endif()
   endforeach()
 endforeach()

@@ -5,6 +5,11 @@ import numpy
 import collide
 from collide import granular
 
+try:
+    from tqdm import tqdm  # shows progress, where it is installed
+except ImportError:
+    tqdm = None
+
 vertices = numpy.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
 plate = collide.Mesh(vertices, numpy.array([[0, 1, 2], [0, 2, 3]], numpy.int32))
 materials = granular.materials(granular.Solid(1e7, 0.2, 2500), granular.SurfacePair(0.5, 0.5, 0.1))
@@ -16,5 +21,7 @@ shift = 1e-4 * (k % 7)
 x, y, z = (k % 4 - 1.5) * 0.0101 + shift, (k // 4 % 4 - 1.5) * 0.0101 - shift, 0.006 + k // 16 * 0.0101
 grains.set(numpy.stack([x, y, z], axis=1), radius)
 dt = grains.largest_time_step()
-grains.steps(int(1 / dt), dt)
+steps = int(1 / dt)
+bar = tqdm(total=steps, unit="step") if tqdm else None
+grains.steps(steps, dt, call=bar and (lambda done: bar.update(done - bar.n)))
 print(f"after {grains.time:.2f} s the heap is {100 * (grains['position'][:, 2].max() + radius):.1f} cm high")

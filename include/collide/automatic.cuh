@@ -88,7 +88,6 @@ struct automatic {
     /// Chooses for spheres; in a simulation once, for all until the next build, as if they were at the mesh.
     template <class Space, class Spheres>
     void prepare(Space& space, automatic const& options, Spheres const& spheres) {
-      is_prepared_ = false;
       if constexpr (detail::serves_steps<Space>) {
         if (!is_given_)
           strategy_ = prefers_tree_in_steps<Space>(options, spheres) ? strategy::tree : best_without_tree(options);
@@ -96,7 +95,7 @@ struct automatic {
       } else {
         strategy_ = choose(space, options, spheres);
       }
-      if (!is_prepared_) make_index(space, options, spheres);
+      make_index(space, options, spheres);
     }
 
     /// Makes room for queries of up to so many spheres.
@@ -177,9 +176,8 @@ struct automatic {
         if (!is_slender_) return false;
         detail::planned_candidates<S> candidates;
         if constexpr (std::is_same<Spheres, sphere_view<S>>::value) {
-          strategy_ = strategy::grid;
-          make_index(space, options, spheres);
-          is_prepared_ = true;
+          build_grid(space, options);
+          grid_.plan(space, options.grid, spheres);
           auto const made = grid_.mesh_lookup();
           candidates = {made.grids, made.grid_count};
         }
@@ -192,7 +190,6 @@ struct automatic {
         double saved = saved_by(8);  // mostly these tell
         if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by(128);
         choices_.for_tree = pays(build, saved, spent_on_boxes_, choices_.next - choices_.queries);
-        if (choices_.for_tree) is_prepared_ = false;
         return choices_.for_tree;
       } else {
         return false;
@@ -265,13 +262,18 @@ struct automatic {
           has_tree_ = true;
         }
       } else if (strategy_ == strategy::grid) {
-        if (!has_grid_) grid_.build(space, options.grid, mesh_);
-        has_grid_ = true;
+        build_grid(space, options);
         grid_.prepare(space, options.grid, what);
       } else {
         if (!has_bounds_) bounds_.build(space, all_pairs(), mesh_);
         has_bounds_ = true;
       }
+    }
+
+    template <class Space>
+    void build_grid(Space& space, automatic const& options) {
+      if (!has_grid_) grid_.build(space, options.grid, mesh_);
+      has_grid_ = true;
     }
 
     mesh_view<S> mesh_;
@@ -280,7 +282,6 @@ struct automatic {
     bvh::index<S> tree_;
     bool has_grid_ = false, has_bounds_ = false, has_tree_ = false;
     bool is_given_ = false;                         ///< made for a radius, or for steps, until the next build
-    bool is_prepared_ = false;                      ///< for the spheres of this query
     bool is_sampled_ = false, is_slender_ = false;  ///< the mesh
     strategy strategy_ = strategy::all_pairs;       ///< of this query
     tree_choices choices_;

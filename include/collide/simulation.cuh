@@ -14,6 +14,7 @@
 #include <collide/simulation/detail/arguments.hpp>
 #include <collide/simulation/detail/bodies/body_memory.hpp>
 #include <collide/simulation/detail/neighbours/verlet_list.hpp>
+#include <collide/simulation/detail/step/clump_motion.hpp>
 #include <collide/simulation/detail/step/lookup_space.hpp>
 #include <collide/simulation/detail/step/particle_kernels.hpp>
 #include <collide/simulation/detail/step/step.hpp>
@@ -44,7 +45,7 @@ namespace collide {
 /// A simulation is for one thread at a time.
 template <class Detector, class... Effect>
 class simulation {
-  static_assert(detail::is_detector<Detector>::value,
+  static_assert(detail::is_detector<Detector>,
                 "collide: the first parameter of a simulation is a detector, such as detector<bucket>");
 
  public:
@@ -63,6 +64,7 @@ class simulation {
   static constexpr bool asks_mesh = effects_type::any_mesh_contact || effects_type::overlaps;
 
   static_assert(detail::check_effects<execution_space, S, Effect...>());
+  static_assert(detail::check_clumps<execution_space, S, effects_type, Effect...>());
   static_assert(!effects_type::overlaps || detail::is_discrete<narrow_phase, S>,
                 "collide: granular_contact, and other effects that press on the mesh by forces, see it where a step "
                 "ends: take karabassi, and steps in which nothing moves farther than its radius");
@@ -259,6 +261,7 @@ class simulation {
       }
       prepare_index();
     }
+    if constexpr (effects_type::has_clumps) assign_clumps<Column>();
     if constexpr (std::is_same<Column, radius>::value || std::is_same<Column, material>::value) know_smallest();
     constexpr bool moves = detail::contains<collide::columns<velocity, angular_velocity>, Column> ||
                            detail::contains<typename effects_type::acceleration_reads, Column>;
@@ -331,12 +334,11 @@ class simulation {
   friend double largest_time_step(simulation<D, E...> const&);
 
   static constexpr bool sweeps = effects_type::any_mesh_contact && !detail::is_discrete<narrow_phase, S>;
-  static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S>::value || ...);
+  static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S> || ...);
   /// Effects other than sources that may make particles in their `begin_step`.
   template <class E>
-  static constexpr bool may_make =
-      !detail::is_source<E> && detail::has_begin_step<E, execution_space, state_type, S>::value &&
-      detail::contains<typename detail::writes_of<E>::type, alive>;
+  static constexpr bool may_make = !detail::is_source<E> && detail::has_begin_step<E, execution_space, state_type, S> &&
+                                   detail::contains<detail::writes_of<E>, alive>;
   static constexpr bool may_be_made = (may_make<Effect> || ...);
   template <class Triangles>
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
@@ -358,9 +360,19 @@ class simulation {
     }
   }
 
+  /// Gives the spheres of clumps what has been assigned to these.
+  template <class Column>
+  void assign_clumps() {
+    static_assert(!detail::contains<collide::columns<position, velocity, angular_velocity, radius>, Column>,
+                  "collide: assign: in a scene with clumps set_clumps says where spheres are, and how they move");
+    if constexpr (detail::contains<detail::union_of<typename clumps::writes, collide::columns<material>>, Column>)
+      space_.for_each(state_.size, detail::place_clumps<S, effects_type>{state_});
+    if constexpr (std::is_same<Column, in_clump>::value) neighbours_.fit(space_, state_.size, radii_);
+  }
+
   /// Finds out by which radii effects limit steps. A source's particles are of material 0. May wait.
   COLLIDE_COLD void know_smallest() {
-    constexpr bool changes_materials = (detail::contains<typename detail::writes_of<Effect>::type, material> || ...);
+    constexpr bool changes_materials = (detail::contains<detail::writes_of<Effect>, material> || ...);
     smallest_ = detail::smallest_radii_of(*this, radii_, !changes_materials);
     if (double const own = static_cast<double>(effects_.source_radius()); own > 0)
       smallest_.of_material[0] = detail::min(smallest_.of_material[0], own);
@@ -396,6 +408,8 @@ class simulation {
     if constexpr (has_begin_step)
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
     if constexpr (effects_type::ends_after_meeting) move(dt);
+    if constexpr (effects_type::has_clumps)
+      space_.for_each(state_.size, detail::move_clumps<S, effects_type>{state_, effects_, dt});
     wake_by_bodies(dt);
     wake_where_others_went(dt);
   }
@@ -406,7 +420,7 @@ class simulation {
     if constexpr (may_make<E>)
       space_.for_each(state_.size, detail::copy_values<std::uint8_t>{state_.at(alive{}), was_there_.data()});
     detail::begin_step_of<E>(effects_, space_, state_, dt);
-    if constexpr (may_make<E>) begin_anew<typename detail::writes_of<E>::type>();
+    if constexpr (may_make<E>) begin_anew<detail::writes_of<E>>();
   }
   template <class Written>
   void begin_anew() {
@@ -478,6 +492,8 @@ class simulation {
 
   /// The part of a step after particles have met.
   void end_step(S dt) {
+    if constexpr (effects_type::has_clumps)
+      space_.for_each(state_.size, detail::end_clumps<S, effects_type>{state_, effects_, effects_.space(), dt});
     if constexpr (effects_type::ends_after_meeting) {
       space_.for_each(state_.size, detail::end_particles<S, effects_type>{state_, effects_, dt});
     } else {
@@ -638,13 +654,15 @@ class simulation {
 
   /// Two particles must not meet on both sides at once.
   COLLIDE_COLD void check_sides() const {
-    auto const shortest = 2 * static_cast<double>(neighbour_lists::width_of(radii_.largest, radii_.smallest));
+    auto shortest = 2 * static_cast<double>(neighbour_lists::width_of(radii_.largest, radii_.smallest));
+    if constexpr (effects_type::has_clumps)
+      shortest = detail::max(shortest, 2.1 * effects_.template of<clumps>().reach);
     auto const space = effects_.space();
     for (int k = 0; k < 3; ++k) {
       if (space.length(k) >= shortest) continue;
       throw error("collide: periodic_box: particles meet across its sides, and so each must be at least " +
                   std::to_string(shortest) +
-                  " long, two diameters of the largest with the skin of its neighbours: make " +
+                  " long, two diameters of the largest with the skin of its neighbours, or a clump: make " +
                   "the box larger, or the particles smaller");
     }
   }

@@ -265,8 +265,10 @@ def measure(scene, s, row):
                 wrong_of_collide=int(wrong[0]))
 
 
-def overhead(row):
-    """A call with one sphere and one triangle: almost all of it is what Python adds."""
+def overhead(row, reference):
+    """A call with one sphere and one triangle, here and in C++: the difference is what Python adds."""
+    lines = subprocess.run([reference, "one"], check=False, capture_output=True, text=True).stdout.splitlines()
+    in_cpp = {name: float(us) for name, us in map(str.split, lines)}
     mesh = collide.Mesh(numpy.eye(3, dtype=numpy.float32))
     centre = numpy.zeros((1, 3), numpy.float32)
     calls = {name: lambda name=name: getattr(mesh, name)(centre, 1.0) for name in ("any", "count", "query", "contacts")}
@@ -278,7 +280,7 @@ def overhead(row):
             for _ in range(500):
                 call()
             times.append((time.process_time() - begin) / 500 * 1e6)
-        row("one sphere", name, "collide", us=min(times))
+        row("one sphere", name, "collide", us=min(times), us_in_cpp=in_cpp[name])
 
 
 def main():
@@ -290,7 +292,7 @@ def main():
         rows.append({"name": f"python/{scene}/{call}/{library}", **numbers})
         print("  ".join(f"{k} {v:.4g}" if isinstance(v, float) else f"{v}" for k, v in rows[-1].items()), flush=True)
 
-    overhead(row)
+    overhead(row, reference)
     with tempfile.TemporaryDirectory() as folder:
         for scene in scenes:
             spheres, triangles = SCENES[scene]

@@ -29,34 +29,6 @@
 
 namespace collide_python {
 
-/// A sink that puts a search of the library's on the stream.
-template <class Find>
-struct searcher {
-  Find find;
-  auto data() const { return find.to; }
-  template <class Space, class Query>
-  void run(Space&, Query const& query) {
-    collide::detail::search_mesh(query, find);
-  }
-};
-template <class S>
-struct searcher<collide::detail::find_winding<S>> {
-  collide::detail::find_winding<S> find;
-  template <class Space, class Query>
-  void run(Space&, Query const& query) {
-    if (query.mesh.size() != 0) find.tree = query.windings();
-    collide::detail::search_mesh(query, find);
-  }
-};
-
-/// Whether a search is one of bodies in poses, too.
-template <class Find>
-inline constexpr bool takes_poses = std::is_same<Find, collide::detail::find_inside>::value;
-template <class S, class Precision>
-inline constexpr bool takes_poses<collide::detail::find_nearest<S, Precision>> = true;
-template <class S, class Precision>
-inline constexpr bool takes_poses<collide::detail::find_signed_distance<S, Precision>> = true;
-
 /// Kernel functor of `for_each` over points: takes the distance out of what was found.
 template <class Record, class S>
 struct take_distance {
@@ -64,13 +36,6 @@ struct take_distance {
   S* to;
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i].distance; }
 };
-
-}  // namespace collide_python
-
-template <class Find>
-inline constexpr bool collide::detail::searches_bodies<collide_python::searcher<Find>> = true;
-
-namespace collide_python {
 
 /// What all queries with spheres have.
 struct question {
@@ -114,7 +79,7 @@ class mesh : public called<Space> {
   void divide(std::vector<std::pair<std::size_t, std::size_t>> const& bodies) {
     bodies_.clear();
     for (auto const& one : bodies) bodies_.push_back({one.first, one.second, {}});
-    is_built_[5] = false;
+    is_built_[5] = is_built_[6] = false;
   }
 
   std::size_t size() const { return view_.size(); }
@@ -181,9 +146,10 @@ class mesh : public called<Space> {
       return nb::cast(sink.total());
     }
     nb::object found;
-    collide::any_hit sink(each<std::uint8_t>(found, {points_of<S>(x, "centres").size()}, q.out, q.numpy));
+    std::size_t const n = points_of<S>(x, "centres").size();
+    collide::any_hit sink(each<std::uint8_t>(found, {n}, q.out, q.numpy));
     ask(q, sink, x);
-    return found;
+    return nb::make_tuple(found, n);
   }
 
   /// What is near each point, in `out` or in memory of its own: `what` is nearest, k_nearest, signed_distance or
@@ -191,48 +157,19 @@ class mesh : public called<Space> {
   /// which have a sign in the latter. `number` is k, or beta of winding numbers.
   nb::object search(std::string_view what, nb::object const& from, double number, double max_distance,
                     std::vector<std::vector<double>> const& poses, nb::tuple const& results) {
-    using namespace collide::detail;
-    using collide::exact;
-    using nearest_record = collide::nearest_triangle<S>;
-    using signed_record = collide::signed_nearest_triangle<S>;
-    nb::object const out = results[2];
-    bool const numpy = nb::cast<bool>(results[3]);
     auto const placed = poses_of(poses);
     array const kept_points = runtime_.keep(import_array(from, "points", runtime_.at()));
-    auto const points = points_of<S>(kept_points, "points");
-    std::size_t const n = points.size();
     if (!(max_distance >= 0)) refuse("max_distance", "is negative or NaN");
     S const farthest = static_cast<S>(max_distance);
-    nb::object found;
-    if (what == "contains") {
-      look(points, placed, find_inside{each<std::uint8_t>(found, {n}, out, numpy)});
-      return found;
-    }
-    if (what == "distance") {
-      S* const to = each<S>(found, {n}, out, numpy);
-      distances<nearest_record>(points, placed, to, [&](auto* room) { return find_nearest<S, exact>{farthest, room}; });
-      return found;
-    }
-    if (what == "sides") {
-      S* const to = each<S>(found, {n}, out, numpy);
-      distances<signed_record>(points, placed, to, [&](auto* room) {
-        return find_signed_distance<S, exact>{farthest, room};
-      });
-      return found;
-    }
-    if (what == "signed_distance") {
-      look(points, placed, find_signed_distance<S, exact>{farthest, each<signed_record>(found, {n}, out, numpy)});
-    } else if (what == "nearest") {
-      look(points, placed, find_nearest<S, exact>{farthest, each<nearest_record>(found, {n}, out, numpy)});
-    } else if (what == "winding") {
-      find_winding<S> const find{{}, number, each<collide::winding<S>>(found, {n}, out, numpy)};
-      look(points, {}, find);
-    } else {
-      auto const k = static_cast<int>(number);
-      auto* const to = each<nearest_record>(found, {n, static_cast<std::size_t>(k)}, out, numpy);
-      look(points, {}, find_k_nearest<S, exact>{farthest, k, to});
-    }
-    return nb::make_tuple(found, n);
+    place_of_points const at{points_of<S>(kept_points, "points"), placed, results[2], nb::cast<bool>(results[3])};
+    if (what == "contains") return found_by(at, collide::contains());
+    if (what == "distance") return distances(at, collide::nearest<S>(farthest));
+    if (what == "sides") return distances(at, collide::signed_distance<S>(farthest));
+    if (what == "signed_distance") return found_by(at, collide::signed_distance<S>(farthest));
+    if (what == "nearest") return found_by(at, collide::nearest<S>(farthest));
+    if (what == "winding") return found_by(at, collide::winding_number<S>(number));
+    auto const k = static_cast<int>(number);
+    return found_by(at, collide::k_nearest<S>(k, farthest), {at.points.size(), static_cast<std::size_t>(k)});
   }
 
  private:
@@ -328,7 +265,7 @@ class mesh : public called<Space> {
       if constexpr (!needs_motion<Sink>) {
         if (!q.poses.empty()) {
           if (q.precision != "exact") refuse("precision", "of a mesh in poses is 'exact'");
-          return run_posed(spheres, q.poses, sink);
+          return run_posed(posed_, 5, spheres, q.poses, sink);
         }
         if (q.precision == "exact") return run<0>(std::get<0>(at_rest_), spheres, sink);
         if (q.precision == "single") return run<1>(std::get<1>(at_rest_), spheres, sink);
@@ -340,39 +277,66 @@ class mesh : public called<Space> {
     } else if constexpr (needs_rest<Sink>) {
       refuse("displacements", "the closest triangle is of spheres at rest: ask for impacts");
     } else {
-      if (!q.poses.empty()) refuse("displacements", "a mesh in poses takes none: use collide.Simulation");
       displacements = runtime_.keep(import_array(q.displacements, "displacements", runtime_.at()));
       auto const paths = points_of<S>(displacements, "displacements");
       if (paths.size() != points.size())
         refuse("displacements", "has " + std::to_string(paths.size()) + " rows, expected " +
                                     std::to_string(points.size()) + ", one for each centre");
       if (q.precision != "exact") refuse("precision", "spheres that move are decided exactly: 'exact'");
-      run<3>(swept_, collide::with_displacements(spheres, paths), sink);
+      auto const moving = collide::with_displacements(spheres, paths);
+      if (q.poses.empty()) return run<3>(swept_, moving, sink);
+      if constexpr (needs_motion<Sink>) {
+        run_posed(posed_swept_, 6, moving, q.poses, sink);
+      } else {
+        refuse("displacements", "of a mesh in poses are for impacts");
+      }
     }
   }
 
-  /// Has a search look at points, while other threads run.
-  template <class Find>
-  void look(collide::point_view<S> const& points, std::vector<collide::pose> const& poses, Find const& find) {
-    searcher<Find> sink{find};
-    if constexpr (takes_poses<Find>) {
-      if (!poses.empty()) return run_posed(points, poses, sink);
+  /// Points of the caller, where the mesh is, and where results go.
+  struct place_of_points {
+    collide::point_view<S> points;
+    std::vector<collide::pose> const& poses;
+    nb::object out;
+    bool numpy;
+  };
+
+  /// Has a sink look at points, while other threads run.
+  template <class Sink>
+  void look(collide::point_view<S> const& points, std::vector<collide::pose> const& poses, Sink& sink) {
+    if constexpr (!std::is_same<Sink, collide::winding_number<S>>::value) {  // which is of a whole mesh
+      if (!poses.empty()) return run_posed(posed_, 5, points, poses, sink);
     }
     run<4>(nearby_, points, sink);
   }
 
-  /// Distances alone, by way of records for some points at a time. `find(records)` is the search.
-  template <class Record, class Find>
-  void distances(collide::point_view<S> const& points, std::vector<collide::pose> const& poses, S* to,
-                 Find const& find) {
-    std::size_t const n = points.size(), most = Space::host_accessible ? 1u << 16 : 1u << 20;
+  /// What a sink finds of each point, and how many points there are.
+  template <class Sink>
+  nb::object found_by(place_of_points const& at, Sink sink, std::vector<std::size_t> shape = {}) {
+    std::size_t const n = at.points.size();
+    if (shape.empty()) shape = {n};
+    nb::object found;
+    sink.write_to(each<std::decay_t<decltype(*sink.data())>>(found, shape, at.out, at.numpy));
+    look(at.points, at.poses, sink);
+    return nb::make_tuple(found, n);
+  }
+
+  /// Distances alone, by way of records for some points at a time.
+  template <class Sink>
+  nb::object distances(place_of_points const& at, Sink sink) {
+    using record = std::decay_t<decltype(*sink.data())>;
+    std::size_t const n = at.points.size(), most = Space::host_accessible ? 1u << 16 : 1u << 20;
+    nb::object found;
+    S* const to = each<S>(found, {n}, at.out, at.numpy);
     auto const room = std::make_unique<kept<nothing>>(runtime_.memory());
-    Record* const records = room->template records<Record>(runtime_, std::min(n, most));
+    record* const records = room->template records<record>(runtime_, std::min(n, most));
+    sink.write_to(records);
     for (std::size_t first = 0; first < n; first += most) {
       std::size_t const m = std::min(n - first, most);
-      look(points.subview(first, m), poses, find(records));
-      runtime_.space().for_each(m, take_distance<Record, S>{records, to + first});
+      look(at.points.subview(first, m), at.poses, sink);
+      runtime_.space().for_each(m, take_distance<record, S>{records, to + first});
     }
+    return nb::make_tuple(found, n);
   }
 
   /// Where records go, each `shape` of them, and in `found` the array that shows them: `out`, or of memory of its own.
@@ -408,15 +372,15 @@ class mesh : public called<Space> {
     return poses;
   }
 
-  template <class Spheres, class Sink>
-  void run_posed(Spheres const& spheres, std::vector<collide::pose> const& poses, Sink& sink) {
+  template <class Detector, class Spheres, class Sink>
+  void run_posed(Detector& posed, std::size_t number, Spheres const& spheres, std::vector<collide::pose> const& poses,
+                 Sink& sink) {
     without_gil const others_run;
-    posed_.space() = runtime_.space();
-    if (!is_built_[5]) {
-      posed_.build(view_, bodies_.empty() ? std::vector<collide::body>{{0, view_.size(), {}}} : bodies_);
-      is_built_[5] = true;
-    }
-    posed_.query(spheres, poses, sink);
+    posed.space() = runtime_.space();
+    if (!is_built_[number])
+      posed.build(view_, bodies_.empty() ? std::vector<collide::body>{{0, view_.size(), {}}} : bodies_);
+    is_built_[number] = true;
+    posed.query(spheres, poses, sink);
   }
 
   template <class Check>
@@ -472,10 +436,11 @@ class mesh : public called<Space> {
   swept swept_{runtime_.space()};
   collide::detector<collide::bvh, collide::karabassi<>, Space, S> nearby_{runtime_.space()};
   collide::posed<collide::detector<collide::bvh, collide::karabassi<>, Space, S>> posed_{runtime_.space()};
+  collide::posed<swept> posed_swept_{runtime_.space()};
   std::vector<collide::body> bodies_;
   bool is_set_ = false;
   double pairs_a_sphere_ = 0;  ///< of the last query
-  std::array<bool, 6> is_built_{};
+  std::array<bool, 7> is_built_{};
 };
 
 }  // namespace collide_python

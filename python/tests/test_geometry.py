@@ -127,6 +127,15 @@ def test_poses_are_as_if_points_moved(dtype):
     mine, other = mesh.nearest(there, poses=pose), mesh.nearest(points)
     assert numpy.array_equal(mine.triangle, other.triangle) and numpy.array_equal(mine.distance, other.distance)
     assert numpy.allclose(mine.point, other.point * turn + numpy.array([1, 2, 3]), atol=1e-6)
+    mine, other = mesh.k_nearest(there, 5, poses=pose), mesh.k_nearest(points, 5)
+    assert numpy.array_equal(mine.triangle, other.triangle) and numpy.array_equal(mine.distance, other.distance)
+    assert numpy.allclose(mine.point, other.point * turn + numpy.array([1, 2, 3]), atol=1e-6)
+    paths = numpy.roll(points, 1, axis=0)
+    for options in {"order": "canonical"}, {"first": True}:
+        mine, other = mesh.impacts(there, paths * turn, 0.25, poses=pose, **options), mesh.impacts(points, paths, 0.25, **options)
+        assert numpy.array_equal(mine.sphere, other.sphere) and numpy.array_equal(mine.triangle, other.triangle)
+        assert len(mine) > 100 and numpy.array_equal(mine.time, other.time)
+        assert numpy.array_equal(mine.normal, other.normal * turn, equal_nan=True)
     assert numpy.array_equal(mesh.contains(there, poses=pose), mesh.contains(points))
     assert numpy.array_equal(mesh.distance(there, signed=True, poses=pose), mesh.signed_distance(points).distance)
     assert numpy.array_equal(mesh.signed_distance(there, poses=pose).distance, mesh.signed_distance(points).distance)
@@ -139,13 +148,16 @@ def test_bodies_in_poses():
     points = random_points(300) * [2, 1, 1]
     assert numpy.array_equal(both.contains(points, poses=poses), cube().contains(points) | cube(at=(2, 0, 0)).contains(points))
     assert both.count(points, 0.1, poses=poses) == cube().count(points, 0.1) + cube(at=(2, 0, 0)).count(points, 0.1)
+    rows = both.k_nearest(points, 4, poses=poses)
+    alone = [m.k_nearest(points, 4).distance for m in (cube(), cube(at=(2, 0, 0)))]
+    assert numpy.array_equal(rows.distance, numpy.sort(numpy.concatenate(alone, axis=1), axis=1)[:, :4])
     with pytest.raises(ValueError, match="poses: there are 1, expected 2"):
         both.any(points, 0.1, poses=poses[:1])
     with pytest.raises(TypeError, match=r"poses: expected numbers of shape \(bodies, 7\)"):
         both.any(points, 0.1, poses="here")
     with pytest.raises(collide.Error, match="no unit quaternion"):
         both.any(points, 0.1, poses=poses * 2)
-    with pytest.raises(ValueError, match="displacements: a mesh in poses takes none"):
+    with pytest.raises(ValueError, match="displacements: of a mesh in poses are for impacts"):
         both.any(points, 0.1, poses=poses, displacements=points)
     with pytest.raises(collide.Error, match="collide"):
         collide.Mesh(CUBE, FACES, bodies=[(0, 13)]).any(points, 0.1, poses=poses[:1])

@@ -1,13 +1,13 @@
-"""mutate.py names | table [FILE] | precompile FOLDER | judge NAME --rows FOLDER | guarded [--digest FILE]: the guards of
-`exact`, one by one.
+"""mutate.py names | table [FILE] | precompile FOLDER | judge NAME --rows FOLDER | guarded PROGRAM [--digest FILE]: the guards
+of `exact`, one by one.
 
 Every mutation takes a guard out of the library, or loosens it; a small program, compiled with that, must then find
 something wrong, or fail; and nothing with the library as it is. The rows that it judges are those of tests/data, those
 of hunted_*.csv, which were looked for because no others show the guards that they name, and cases next to contact: see
-make_rows.cpp. `precompile` compiles ../standard.hpp for all compilers, into the folder of the rows. `table` prints the
-lists of all mutations and of guards that no row shows, or writes them to a file. `guarded` prints the files on which the
-verdict of a mutation depends, and writes their digest to a file; the one beside this script, `judged`, is of the files
-that all mutations were last seen to be found in.
+make_rows.cpp. `precompile` compiles ../standard.hpp for all compilers, into the folder of the rows. `names` prints each mutation and the
+program that judges it, `table` the lists of all mutations and of guards that no row shows, or writes them to a file.
+`guarded` prints the files on which the verdicts of a program depend, and writes their digest into its line of a file; the
+one beside this script, `judged`, is of the files that all mutations were last seen to be found in.
 """
 import argparse
 import hashlib
@@ -363,28 +363,42 @@ def mutated(name):
     return file, text
 
 
-def guarded():
-    """The headers that have a guard, those that they include, and what judges them."""
-    found, left = set(), [ROOT / "include" / LIBRARY / file for file, text in headers().items() if "// guard: " in text]
+def included(sources):
+    """The files of the repository, and those that they include, and so on."""
+    found, left = set(), list(sources)
     while left:
-        header = left.pop()
-        if header not in found:
-            found.add(header)
-            left += [ROOT / "include" / name for name in re.findall(r'#include [<"](collide/[^>"]+)', header.read_text())]
+        file = left.pop()
+        if file not in found:
+            found.add(file)
+            for name in re.findall(r'#include [<"]([^>"]+)', file.read_text()):
+                folders = (file.parent, ROOT / "include", ROOT / "tests" / "unit", ROOT / "tests" / "mutation", ROOT / "examples")
+                left += [path.resolve() for folder in folders if (path := folder / name).is_file()][:1]
+    return found
+
+
+def guarded(program):
+    """The files that a program is compiled from, and those that make the rows that it judges by."""
     tests = ROOT / "tests"
-    own = [p for p in HERE.iterdir() if p.suffix in (".cpp", ".hpp", ".csv", ".py")]
-    return sorted(found) + sorted([*own, *tests.glob("data/static_*.csv"), *tests.glob("oracle/scene.*"), *tests.glob("unit/narrow_phase/near_contact.*"),
-                                   tests / "flags" / "verdicts.cpp", tests / "flush_to_zero.hpp"])
+    source = (tests / "flags" if program == "verdicts" else HERE) / f"{program}.cpp"
+    oracle = [*tests.glob("oracle/scene.*"), *tests.glob("oracle/exact.*"), *tests.glob("unit/narrow_phase/near_contact.*")]
+    return sorted(included([source, HERE / "make_rows.cpp", *oracle])) + sorted([HERE / "mutate.py", *HERE.glob("*.csv"), *tests.glob("data/static_*.csv")])
 
 
-def digest():
+def digest(program):
     """A number of what is guarded: another one if a file changes in more than its place, comments, includes and format."""
     def essence(file):
         text = file.read_text()
-        if file.suffix in (".hpp", ".cpp"):
+        if file.suffix in (".hpp", ".cuh", ".cpp"):
             text = "".join(re.sub(r"//[^\n]*|#include[^\n]*", "", text).split())
         return hashlib.sha256(text.encode()).hexdigest()
-    return hashlib.sha256("".join(sorted(map(essence, guarded()))).encode()).hexdigest()
+    return hashlib.sha256("".join(sorted(map(essence, guarded(program)))).encode()).hexdigest()
+
+
+def write_digest(program, file):
+    """Puts the program's digest into its line of a file, which begins as `judged`."""
+    lines = dict(line.split() for line in (file if file.exists() else HERE / "judged").read_text().splitlines())
+    lines[program] = digest(program)
+    file.write_text("".join(f"{name} {lines[name]}\n" for name in sorted(lines)))
 
 
 def precompile(folder, eigen):
@@ -448,7 +462,9 @@ def main():
     precompiled = commands.add_parser("precompile")
     precompiled.add_argument("folder")
     precompiled.add_argument("--eigen", default="/usr/include/eigen3")
-    commands.add_parser("guarded").add_argument("--digest", type=pathlib.Path)
+    of_program = commands.add_parser("guarded")
+    of_program.add_argument("program", choices={m[1] for m in (SOUND | MUTATIONS).values()})
+    of_program.add_argument("--digest", type=pathlib.Path)
     one = commands.add_parser("judge")
     one.add_argument("name", choices=SOUND | MUTATIONS)
     one.add_argument("--rows", required=True, help="the folder that make_rows has written to")
@@ -456,15 +472,15 @@ def main():
     args = parser.parse_args()
 
     if args.command == "names":
-        print("\n".join(SOUND | MUTATIONS))
+        print("\n".join(f"{name} {m[1]}" for name, m in (SOUND | MUTATIONS).items()))
         return 0
     if args.command == "table":
         args.file.write("# Mutations\n\n" + "".join(tables()))
         return 0
     if args.command == "guarded":
-        print("\n".join(map(str, guarded())))
+        print("\n".join(map(str, guarded(args.program))))
         if args.digest:
-            args.digest.write_text(digest() + "\n")
+            write_digest(args.program, args.digest)
         return 0
     if args.command == "precompile":
         precompile(args.folder, args.eigen)

@@ -11,6 +11,7 @@
 #include <collide/ranks/thread_ranks.hpp>
 #include <collide/simulation/checkpoint.hpp>
 #include <collide/simulation/energy.hpp>
+#include <collide/simulation/place_clumps.hpp>
 
 #include "execution/lockstep.hpp"
 #include "scene.hpp"
@@ -44,7 +45,11 @@ class moving_scene {
       if (trial_.how != surface::at_rest) bodies.push_back({0, w_.corners.size() / 9, motion()});
       particles_.set_mesh(made, bodies);
     }
-    particles_.set(made, part, capacity);
+    if constexpr (collide::detail::contains<typename Simulation::columns, collide::in_clump>) {
+      set_dumbbells(made, part);
+    } else {
+      particles_.set(made, part, capacity);
+    }
   }
 
   /// Steps from one number of steps to another.
@@ -61,6 +66,25 @@ class moving_scene {
   }
 
  private:
+  /// Each two grains are a clump.
+  template <class Simulation>
+  void set_dumbbells(Simulation& made, range part) {
+    std::vector<collide::clump_shape> shapes;
+    std::vector<collide::placed_clump> all;
+    for (std::size_t i = part.first; i < part.first + part.size; i += 2) {
+      std::vector<collide::sphere<double>> spheres;
+      for (std::size_t k = i; k < std::min(i + 2, part.first + part.size); ++k)
+        spheres.push_back({{double(w_.centres[3 * k]), double(w_.centres[3 * k + 1]), double(w_.centres[3 * k + 2])},
+                           double(w_.radii.empty() ? w_.radius : w_.radii[k])});
+      shapes.push_back(collide::shape_of_clump(spheres));
+      collide::placed_clump c;
+      c.shape = all.size();
+      for (std::size_t k = 0; k < 3; ++k) c.moving.linear[k] = double(w_.velocities[3 * i + k]);
+      all.push_back(c);
+    }
+    collide::set_clumps(made, shapes, all);
+  }
+
   collide::body_motion motion() const {
     collide::body_motion m;
     m.amplitude[0] = size_of_motion_ * trial_.draw(0.01, 0.001, 0.02, 40);
@@ -156,12 +180,14 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
 
   /// The same on ranks.
   void check_ranks() const {
-    for (int const n : {1, 3}) {
-      std::vector<complaints> wrong(static_cast<std::size_t>(n));
-      collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
-        check_rank(ranks, wrong[static_cast<std::size_t>(ranks.rank())]);
-      });
-      for (auto const& w : wrong) CHECK(w.text() == "");
+    if constexpr (!has<collide::clumps>) {  // which do not compile there
+      for (int const n : {1, 3}) {
+        std::vector<complaints> wrong(static_cast<std::size_t>(n));
+        collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
+          check_rank(ranks, wrong[static_cast<std::size_t>(ranks.rank())]);
+        });
+        for (auto const& w : wrong) CHECK(w.text() == "");
+      }
     }
   }
 

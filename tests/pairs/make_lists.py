@@ -78,6 +78,9 @@ FOUND = [
 # Behind all others, of effects that only go with few: they are in no pair that must be covered.
 LAST = [
     ("velocity_verlet gravity granular_contact wear contact_work mesh_forces reaction polydisperse lost", ("moving", "karabassi", "double")),
+    ("velocity_verlet gravity granular_contact clumps mesh_forces reaction pair_forces lost", ("moving", "karabassi", "double")),
+    ("velocity_verlet gravity drag wind granular_contact wear clumps polydisperse lost_motion mesh_forces periodic_box",
+     ("driven", "karabassi", "float")),
     ("sleep gravity emit granular_contact wear contact_work lost reaction periodic_box", ("driven", "karabassi", "float")),
     ("gravity sphere_contact contact_work polydisperse periodic_box lost", ("fixed", "karabassi", "float")),
 ]
@@ -92,6 +95,11 @@ REFUSED = {
     "granular_contact_with_bounce": "granular_contact beside bounce, friction, spin, adhesion or absorb, which act where "
     "particles hit the mesh",
     "granular_contact_that_sweeps": "granular_contact with karabassi_swept",
+    "clumps_with_bounce": "clumps beside bounce, friction, spin or adhesion",
+    "clumps_with_box_walls": "clumps beside box_walls or mass_flow",
+    "clumps_with_external_forces": "clumps beside external_forces",
+    "clumps_with_sleep": "clumps beside sleep, emit or absorbing_box",
+    "clumps_without_velocity_verlet": "clumps without velocity_verlet and contact by forces",
     "two_integrators": "two integrators",
     "two_sources": "two sources",
     "two_kinds_of_bodies": "two kinds of bodies",

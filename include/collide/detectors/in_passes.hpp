@@ -38,7 +38,7 @@ namespace collide {
 /// \tparam Detector  a `detector`
 template <class Detector>
 class in_passes {
-  static_assert(detail::is_detector<Detector>::value,
+  static_assert(detail::is_detector<Detector>,
                 "collide: what gets a mesh in passes is a detector, such as detector<bucket>");
 
  public:

@@ -29,8 +29,8 @@ namespace collide {
 /// triangle, as it lies in memory, is decided as the narrow phase decides, so with `exact` as in real arithmetic.
 /// Contacts are computed there, and point and normal are taken to the world the same way. The same bits in every space.
 ///
-/// `nearest` decides within a body as the narrow phase says; of bodies it takes the one with the smaller `distance` as
-/// that is rounded, and of equal ones the smaller number. The point is in the world.
+/// `nearest` and `k_nearest` decide within a body as the narrow phase says; of bodies the one with the smaller
+/// `distance` as that is rounded comes first, and of equal ones the smaller number. The point is in the world.
 ///
 /// `contains` and `signed_distance` are for bodies that are closed, each by itself. A point is inside if it is inside
 /// of any body, or on its surface. The signed distance is the least of all bodies' in the same way. Outside of all it
@@ -40,21 +40,17 @@ namespace collide {
 ///
 /// Triangles of no body rest where they are; to these three those that follow each other in the mesh are one body.
 /// Memory: an index of each body, 20 bytes of float or 32 of double for each sphere, 24 if radii differ or 40, and up
-/// to 20 for each pair, also where the sink only counts; with `nearest`, `contains` and `signed_distance` an entry more
-/// for each sphere. It is kept. One object is for one thread at a time.
+/// to 20 for each pair, also where the sink only counts; searches of what is nearest or around a point take as
+/// much again as their results. It is kept. One object is for one thread at a time.
 ///
-/// \tparam Detector  a `detector` for spheres at rest
+/// \tparam Detector  a `detector`; with a narrow phase for spheres that move, bodies rest in their poses as these do
 template <class Detector>
 class posed {
-  static_assert(detail::is_detector<Detector>::value,
-                "collide: posed is of a detector, such as posed<detector<bucket>>");
-  static_assert(detail::is_discrete<typename Detector::narrow_phase, typename Detector::scalar>,
-                "collide: posed is for spheres that rest: bodies and spheres that move in a step are those of a "
-                "simulation");
+  static_assert(detail::is_detector<Detector>, "collide: posed is of a detector, such as posed<detector<bucket>>");
 
  public:
   using scalar = typename Detector::scalar;                    ///< type of the coordinates: float or double
-  using spheres_type = sphere_view<scalar>;                    ///< that of the detector
+  using spheres_type = typename Detector::spheres_type;        ///< that of the detector
   using execution_space = typename Detector::execution_space;  ///< that of the detector
 
   /// Without a mesh. The stream and the memory resource of the space must outlive it.
@@ -94,8 +90,9 @@ class posed {
   /// \param spheres  in memory of the space, as for `detector::query`
   /// \param poses    on the host, one for each body in their order; rotations are made unit quaternions
   /// \param sink     `count`, `any_hit`, `pairs`, `csr`, `contacts`, `closest`, `closest_contact`, or `visit` of a
-  ///                 function that takes any hit; `nearest`, `contains` or `signed_distance`, with a broad phase that
-  ///                 finds what is near
+  ///                 function that takes any hit; of spheres that move also `impacts`, `earliest`, `earliest_impact`;
+  ///                 `nearest`, `k_nearest`, `contains` or `signed_distance`, with a broad phase that finds what is
+  ///                 near
   /// \return the sink, as `detector::query` does
   /// \throws error  if there was no `build`, there are not as many poses as bodies, or one is not finite or no rotation
   ///
@@ -125,6 +122,8 @@ class posed {
   execution_space& space() { return space_; }
 
  private:
+  static constexpr bool is_at_rest = std::is_same<spheres_type, sphere_view<scalar>>::value;
+
   /// Triangles that follow each other, of one body or of none.
   struct part {
     std::size_t first, size;
@@ -194,20 +193,22 @@ class posed {
       scalar* const centres = centres_.reserve(resource, 3 * n);
       scalar* const radii = from.one_radius() ? nullptr : radii_.reserve(resource, n);
       auto of_part = f;
-      of_part.to = std::get<buffer<result>>(of_part_).reserve(resource, n);
+      std::size_t const width = detail::width_of(f);
+      of_part.to = std::get<buffer<result>>(of_part_).reserve(resource, n * width);
       for (std::size_t k = 0; k < parts_.size(); ++k) {
         part const& p = parts_[k];
         space_.for_each(n, detail::see_from_body<scalar>{mesh(), p.frame, from, centres, radii});
         detectors_[k].query(view_of(from, centres, radii, n), detail::search_part<decltype(of_part)>{of_part});
-        space_.for_each(
-            n, detail::take_first<scalar, result>{mesh(), p.frame, static_cast<id>(p.first), of_part.to, f.to, k == 0});
+        space_.for_each(n, detail::take_first<scalar, result>{mesh(), p.frame, static_cast<id>(p.first), width,
+                                                              of_part.to, f.to, k == 0});
       }
     };
     sink.run(space_, detail::search_query<Detector, decltype(search)>{spheres, search});
   }
 
   /// Spheres as a body sees them.
-  static spheres_type view_of(spheres_type const& spheres, scalar const* centres, scalar const* radii, std::size_t n) {
+  static sphere_view<scalar> view_of(spheres_type const& spheres, scalar const* centres, scalar const* radii,
+                                     std::size_t n) {
     auto const at = points<scalar>(centres, n);
     return radii == nullptr ? spheres_at(at, spheres.common_radius()) : spheres_at(at, radii);
   }
@@ -220,11 +221,12 @@ class posed {
     auto* const count = clear_count();
     id* const near = near_.reserve(resource, n);
     space_.for_each((n + group - 1) / group,
-                    detail::list_near_bodies<scalar, group>{mesh(), bodies_.margin(), spheres, count, near});
+                    detail::list_near_bodies<spheres_type, group>{mesh(), bodies_.margin(), spheres, count, near});
     std::size_t const size = space_.read(count);
     numbers_.reserve(resource, n);
     centres_.reserve(resource, 3 * n);
     if (!spheres.one_radius()) radii_.reserve(resource, n);
+    if (!is_at_rest) displacements_.reserve(resource, 3 * n);
     for (std::size_t k = 0; size != 0 && k < parts_.size(); ++k) find(spheres, size, parts_[k], detectors_[k]);
   }
 
@@ -232,11 +234,17 @@ class posed {
   void find(spheres_type const& spheres, std::size_t n, part const& p, Detector& detector) {
     auto* const count = clear_count();
     scalar* const radii = spheres.one_radius() ? nullptr : radii_.data();
-    space_.for_each(n, detail::list_near_body<scalar>{mesh(), p.frame, bodies_.margin(), spheres, near_.data(), count,
-                                                      numbers_.data(), centres_.data(), radii});
+    space_.for_each(
+        n, detail::list_near_body<spheres_type>{mesh(), p.frame, bodies_.margin(), spheres, near_.data(), count,
+                                                numbers_.data(), centres_.data(), radii, displacements_.data()});
     std::size_t const size = space_.read(count);
     if (size == 0) return;
-    detector.query(view_of(spheres, centres_.data(), radii, size), hits_);
+    auto const seen = view_of(spheres, centres_.data(), radii, size);
+    if constexpr (is_at_rest) {
+      detector.query(seen, hits_);
+    } else {
+      detector.query(with_displacements(seen, displacements_.data()), hits_);
+    }
     pair* const to = found_.append(space_, hits_.size());
     space_.for_each(hits_.size(), detail::renumber_pairs{
                                       hits_.data(), {0, numbers_.data()}, {static_cast<id>(p.first), nullptr}, to});
@@ -261,9 +269,9 @@ class posed {
   detail::pair_list found_;
   buffer<double> time_;
   buffer<std::uint32_t> count_;
-  buffer<id> near_;                 ///< spheres near any part
-  buffer<id> numbers_;              ///< of spheres near a part,
-  buffer<scalar> centres_, radii_;  ///< as it sees them
+  buffer<id> near_;                                 ///< spheres near any part
+  buffer<id> numbers_;                              ///< of spheres near a part,
+  buffer<scalar> centres_, radii_, displacements_;  ///< as it sees them
   /// Results of a search of a part.
   std::tuple<buffer<nearest_triangle<scalar>>, buffer<signed_nearest_triangle<scalar>>, buffer<std::uint8_t>> of_part_;
 };

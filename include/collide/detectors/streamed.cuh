@@ -21,7 +21,7 @@ namespace collide {
 /// and chunks of the usual size. It is kept between queries. One object is for one thread at a time.
 template <class Detector>
 class streamed {
-  static_assert(detail::is_detector<Detector>::value,
+  static_assert(detail::is_detector<Detector>,
                 "collide: what spheres are streamed to is a detector, such as detector<bucket>");
 
  public:

@@ -25,6 +25,9 @@ inline constexpr int carried_by_moving = 128;
 inline constexpr std::uint8_t came_too_fast = 255;
 COLLIDE_HD_INLINE bool is_stuck(std::uint8_t adhered) { return adhered != 0 && adhered != came_too_fast; }
 
+/// In `held`: the second half kick of the last step is still to come; or the particle stuck all through the step.
+inline constexpr std::uint8_t owes_a_kick = 1, stuck_all_along = 2;
+
 /// In `in_contact`: the particle has been woken between steps, and forces on it are not known.
 inline constexpr std::uint8_t just_woken = 2;
 
@@ -95,9 +98,16 @@ struct material : detail::byte_column {};
 /// Radians per unit of time, around the axis that it points along; see `spin`.
 struct angular_velocity : detail::vector_column {};
 
+<<<<<<< HEAD
 /// 1 if the particle is there, 0 if its place is free; see `emit` and `absorb`. An effect of your own makes a particle
 /// in its `begin_step` by writing 1 at a free place. No contact remembers what was there, and columns that no such
 /// effect writes have their first values again, except for position, velocity and radius.
+=======
+/// 1 if the particle is there, 0 if its place is free, within a step 2 to 4 if it has just been made; see `emit` and
+/// `absorb`. An effect of your own makes a particle in its `begin_step` by writing 1 at a free place. No contact
+/// remembers what was there, and columns that no such effect writes have their first values again, except for position,
+/// velocity and radius.
+>>>>>>> main
 struct alive : detail::byte_column {
   template <class S>
   static constexpr std::uint8_t initial = 1;
@@ -165,6 +175,15 @@ struct third_support : detail::vector_column {};
 
 /// Which surface `third_support` is of: the first of them.
 struct third_supported_by : detail::byte_column {};
+
+/// The number of the first sphere of the clump that a sphere is of; `no_id` of one that is a grain by itself. See
+/// `clumps`.
+struct in_clump {
+  template <class S>
+  using value = id;
+  template <class S>
+  static constexpr id initial = no_id;
+};
 
 /// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
 struct global_number {

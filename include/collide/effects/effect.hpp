@@ -62,6 +62,7 @@
 #include <utility>
 
 #include <collide/core/contact.hpp>
+#include <collide/core/detail/detected.hpp>
 #include <collide/core/error.hpp>
 #include <collide/effects/columns.hpp>
 #include <collide/exact/detail/numeric/float_bits.hpp>
@@ -115,15 +116,13 @@ inline bool is_amount(double x) { return x >= 0 && is_finite(x); }
 inline bool is_positive(double x) { return x > 0 && is_finite(x); }
 inline bool is_finite(double const (&x)[3]) { return is_finite(x[0]) && is_finite(x[1]) && is_finite(x[2]); }
 
-template <class E, class = void>
-struct checks_parameters : std::false_type {};
 template <class E>
-struct checks_parameters<E, std::void_t<decltype(std::declval<E const&>().check_parameters())>> : std::true_type {};
+using check_parameters_call = decltype(std::declval<E const&>().check_parameters());
 
 /// Calls `check_parameters` of an effect, or of a part of one, if it has it.
 template <class E>
 void check_part(E const& effect) {
-  if constexpr (checks_parameters<E>::value) effect.check_parameters();
+  if constexpr (is_valid<check_parameters_call, E>) effect.check_parameters();
 }
 
 /// True for an effect whose `end_step` asks what the forces are.
@@ -152,16 +151,13 @@ inline constexpr bool saves_parameters<E, std::void_t<decltype(E::saves_paramete
 
 /// f(part) for each part of an effect's parameters that has no padding, for checkpoints: what its `for_each_part(f)`
 /// gives, or all of it. Nothing of what is empty, or of what says that it is not saved.
-template <class E, class F, class = void>
-struct gives_parts : std::false_type {};
 template <class E, class F>
-struct gives_parts<E, F, std::void_t<decltype(std::declval<E&>().for_each_part(std::declval<F const&>()))>>
-    : std::true_type {};
+using for_each_part_call = decltype(std::declval<E&>().for_each_part(std::declval<F const&>()));
 template <class E, class F>
 void for_each_part_of(E& of, F const& f) {
   if constexpr (std::is_class<E>::value && !saves_parameters<E>) {
     return;
-  } else if constexpr (gives_parts<E, F>::value) {
+  } else if constexpr (is_valid<for_each_part_call, E, F>) {
     of.for_each_part(f);
   } else if constexpr (!std::is_empty<E>::value) {
     f(of);

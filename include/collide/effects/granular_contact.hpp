@@ -50,10 +50,9 @@ struct granular_contact {
 
   using reads = detail::union_of<columns<position>, typename Materials::reads>;
   using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;
-  using remembers =
-      typename detail::contact_columns_of<detail::union_of<columns<>, typename detail::remembers_of<Tangential>::type,
-                                                           typename detail::remembers_of<Rolling>::type,
-                                                           typename detail::remembers_of<Cohesion>::type>>::type;
+  using remembers = typename detail::contact_columns_of<
+      detail::union_of<columns<>, detail::remembers_of<Tangential>, detail::remembers_of<Rolling>,
+                       detail::remembers_of<Cohesion>>>::type;
 
   static constexpr bool is_memoryless = remembers::list::size == 0;  ///< contacts remember nothing
 

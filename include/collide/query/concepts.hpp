@@ -23,20 +23,12 @@
 #include <type_traits>
 #include <utility>
 
+#include <collide/core/detail/detected.hpp>
 #include <collide/mesh.hpp>
 #include <collide/narrow/detail/traits.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {
-
-template <class Void, template <class...> class Expression, class... T>
-struct is_valid_expression : std::false_type {};
-template <template <class...> class Expression, class... T>
-struct is_valid_expression<std::void_t<Expression<T...>>, Expression, T...> : std::true_type {};
-
-/// True if Expression<T...> is a type.
-template <template <class...> class Expression, class... T>
-inline constexpr bool is_valid = is_valid_expression<void, Expression, T...>::value;
 
 template <template <class> class View, class T>
 inline constexpr bool is_made_of = false;
@@ -174,12 +166,11 @@ template <class Index, class Space, class Options, class S>
 using index_refit = decltype(std::declval<Index&>().refit(std::declval<Space&>(), std::declval<Options const&>(),
                                                           std::declval<mesh_view<S>>()));
 
-template <class D, class = void>
-struct is_detector : std::false_type {};
 template <class D>
-struct is_detector<
-    D, std::void_t<typename D::broad_phase, typename D::narrow_phase, typename D::execution_space, typename D::scalar>>
-    : std::true_type {};
+using detector_types =
+    std::void_t<typename D::broad_phase, typename D::narrow_phase, typename D::execution_space, typename D::scalar>;
+template <class D>
+inline constexpr bool is_detector = is_valid<detector_types, D>;
 
 /// The members of what a sink passes to a query.
 template <class H>

@@ -30,7 +30,7 @@ class hit {
   /// member contact_of.
   COLLIDE_HD collide::contact<S> contact() const {
     static_assert(
-        detail::has_contact<NarrowPhase, S>::value,
+        detail::has_contact<NarrowPhase, S>,
         "collide: contacts need a narrow phase with a static member contact_of(triangle, sphere) that returns a "
         "contact");
     collide::contact<S> c = NarrowPhase::contact_of(mesh_[at_], spheres_[sphere]);
@@ -43,7 +43,7 @@ class hit {
   /// a member impact_of.
   COLLIDE_HD collide::impact<S> impact() const {
     static_assert(
-        detail::has_impact<NarrowPhase, S>::value,
+        detail::has_impact<NarrowPhase, S>,
         "collide: impacts need a narrow phase for spheres that move, with a static member impact_of(triangle, "
         "moving_sphere) that returns an impact, such as karabassi_swept");
     collide::impact<S> i = NarrowPhase::impact_of(mesh_[at_], spheres_[sphere]);

@@ -36,7 +36,7 @@ inline constexpr divided_t divided{};
 /// \tparam Ranks     `one_rank`, `thread_ranks` or `mpi_ranks`
 template <class Detector, class Ranks = one_rank>
 class distributed {
-  static_assert(detail::is_detector<Detector>::value,
+  static_assert(detail::is_detector<Detector>,
                 "collide: the first parameter of distributed is a detector, such as detector<bucket>, or a simulation, "
                 "which needs distributed_simulation.cuh");
   static_assert(detail::check_ranks<Ranks>());

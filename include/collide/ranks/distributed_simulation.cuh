@@ -83,6 +83,8 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   using part_type = detail::part_of_simulation<simulation_type>;
   using broad_phase = typename Detector::broad_phase;
   static constexpr bool any_pair_contact = part_type::any_pair_contact;
+  static_assert(!detail::contains<columns, in_clump>,
+                "collide: clumps are on one rank: a simulation of several does not have them yet");
   static_assert((detail::check_on_ranks<Effect, execution_space, typename simulation_type::state_type, S>() && ...));
 
  public:

@@ -267,7 +267,7 @@ class checkpoint {
   }
   template <class E>
   static std::size_t size_of_parameters() {
-    if constexpr (gives_parts<E, no_part>::value) {
+    if constexpr (is_valid<for_each_part_call, E, no_part>) {
       return bytes_of_parameters(E()).size();
     } else {
       return sizeof(E);

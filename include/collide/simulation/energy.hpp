@@ -81,6 +81,7 @@ struct particles_on_host {
 
   std::vector<S> x, v, w, r;
   std::vector<std::uint8_t> is_there, solid;
+  std::vector<id> clump;                           ///< `in_clump`, in scenes with clumps
   std::vector<std::pair<id, std::size_t>> places;  ///< by numbers among the particles of all ranks
   typename simulation<Detector, Effect...>::effects_type::space_type space;
 
@@ -96,6 +97,7 @@ struct particles_on_host {
     if constexpr (contains<list, angular_velocity>) w = of.template to_host<angular_velocity>();
     if constexpr (contains<list, alive>) is_there = of.template to_host<alive>();
     if constexpr (contains<list, material>) solid = of.template to_host<material>();
+    if constexpr (contains<list, in_clump>) clump = of.template to_host<in_clump>();
     if constexpr (contains<list, global_number>) {
       for (id const number : of.template to_host<global_number>()) places.emplace_back(number, places.size());
       std::sort(places.begin(), places.end());
@@ -108,6 +110,9 @@ struct particles_on_host {
     auto const found = std::lower_bound(places.begin(), places.end(), std::pair(number, std::size_t{0}));
     return found != places.end() && found->first == number ? found->second : r.size();
   }
+
+  /// True of a sphere that is not a grain by itself.
+  bool is_of_clump(std::size_t i) const { return !clump.empty() && clump[i] != no_id; }
 
   static vec3<double> at(std::vector<S> const& all, std::size_t i) {
     return vec3<S>(all[3 * i], all[3 * i + 1], all[3 * i + 2]).template cast<double>();
@@ -144,7 +149,9 @@ struct particles_on_host {
     std::vector<S> there = x;
     for (std::size_t i = 0; i < r.size(); ++i)
       if (is_there[i] == 0) there[3 * i] = std::numeric_limits<S>::quiet_NaN();
-    detail::for_each_overlap(there, r, space, f);
+    detail::for_each_overlap(there, r, space, [&](swept_point const& a, swept_point const& b, double overlap) {
+      if (!is_of_clump(a.number) || clump[a.number] != clump[b.number]) f(a, b, overlap);
+    });
   }
   /// f(i, k, overlap) for each two that overlap.
   template <class F>
@@ -301,6 +308,21 @@ struct mesh_contacts_of {
   }
 };
 
+/// Adds the energies of the motion of clumps, and in a field; density(i) is that of sphere i.
+template <class Detector, class... Effect, class Density>
+void add_clumps(energy_sums& to, simulation<Detector, Effect...> const& of,
+                particles_on_host<Detector, Effect...> const& all, vec3<double> const& field, Density const& density) {
+  auto const x = of.template to_host<clump_centre>(), v = of.template to_host<clump_velocity>(),
+             l = of.template to_host<clump_momentum>(), inertia = of.template to_host<clump_inertia>();
+  for (std::size_t i = 0; i < all.clump.size(); ++i) {
+    if (all.clump[i] != i) continue;
+    double const m = sphere_mass(density(i), 1.0) * static_cast<double>(inertia[4 * i + 3]);
+    to.kinetic += 0.5 * m * all.at(v, i).squaredNorm();
+    to.rotational += 0.5 * m * all.at(l, i).dot(all.at(all.w, i));
+    to.potential -= m * field.dot(all.at(x, i));
+  }
+}
+
 }  // namespace detail
 
 /// The energy of all particles that are alive, those that sleep included; NaN if one is nowhere. With
@@ -324,17 +346,22 @@ energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0
                           "energy: density is above 0: give it, or name sphere_contact");
   detail::particles_on_host<Detector, Effect...> const all(of);
   energy_sums sum;
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    if (all.is_there[i] == 0) continue;
-    double own = density;
+  vec3<double> const pull(field.x, field.y, field.z);
+  auto const density_of = [&](std::size_t i) {
     if constexpr (is_granular) {
-      if (is_of_material) own = of.template effect<law_type>().made_of.template density_of<double>(all.solid_of(i));
+      if (is_of_material) return of.template effect<law_type>().made_of.template density_of<double>(all.solid_of(i));
     }
-    double const r = all.radius_of(i), m = detail::sphere_mass(own, r);
+    return density;
+  };
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    if (all.is_there[i] == 0 || all.is_of_clump(i)) continue;
+    double const r = all.radius_of(i), m = detail::sphere_mass(density_of(i), r);
     sum.kinetic += 0.5 * m * all.at(all.v, i).squaredNorm();
     sum.rotational += 0.2 * m * r * r * all.at(all.w, i).squaredNorm();
-    sum.potential -= m * vec3<double>(field.x, field.y, field.z).dot(all.at(all.x, i));
+    sum.potential -= m * pull.dot(all.at(all.x, i));
   }
+  if constexpr (detail::contains<typename simulation<Detector, Effect...>::columns, in_clump>)
+    add_clumps(sum, of, all, pull, density_of);
   if (is_granular || springs.stiffness > 0)
     all.for_each_contact([&](std::size_t i, std::size_t k, double overlap) {
       sum.elastic += 0.5 * springs.stiffness * overlap * overlap;

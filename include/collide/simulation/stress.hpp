@@ -169,6 +169,8 @@ struct field_sums {
 template <class Detector, class... Effect, class Sink>
 void for_each_load(simulation<Detector, Effect...> const& of, Sink& sink) {
   using law_type = typename granular_of<Effect...>::type;
+  static_assert(!contains<typename simulation<Detector, Effect...>::columns, in_clump>,
+                "collide: stress does not know clumps yet");
   law_type const& law = of.template effect<law_type>();
   particles_on_host<Detector, Effect...> const all(of);
   auto loads = mesh_contacts_of<Detector, Effect...>::template sums<mesh_load>(of, load_of_mesh<law_type>{law});

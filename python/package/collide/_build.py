@@ -47,7 +47,8 @@ def _command(space, capability):
     if space == "host":
         compiler = _find("CXX", ("g++", "clang++", "c++"))
         compiled = ["-DCOLLIDE_COMPILED", "-Wl,--no-as-needed", str(_HERE / "libcollide_python.so")]
-        return [*compiler, *flags, "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-fopenmp", *compiled]
+        hoards = "--param=ggc-min-heapsize=2000000"  # g++ takes 400 MB; to collect some would take a twentieth of the time
+        return [*compiler, *flags, "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-fopenmp", hoards, *compiled]
     compiler = _find("CUDACXX", ("nvcc", "/usr/local/cuda/bin/nvcc"))
     host = "-Xcompiler=-fPIC,-fvisibility=hidden,-ffp-contract=off,-fopenmp"
     cuda = ["--expt-relaxed-constexpr", "--diag-suppress=20012", "-fmad=false", "-cudart=static", f"-arch=sm_{capability}"]

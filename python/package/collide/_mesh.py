@@ -360,13 +360,15 @@ class Mesh:
 
     def impacts(
         self, centres: Array, displacements: Array, radius: Union[float, Array], *, first: bool = False,
-        order: Order = "unspecified", capacity: Optional[int] = None, out: Optional[Array] = None
+        order: Order = "unspecified", capacity: Optional[int] = None, poses: Optional[Poses] = None,
+        out: Optional[Array] = None
     ) -> Impacts:
         """Moving spheres: every pair that touches on the way from ``centres`` to ``centres + displacements``, with the
         time of impact and the contact then.
 
         first  one row for each sphere, of the triangle that it hits first (of equal times the one of the smallest
                number). Of a sphere that touches nothing ``triangle`` is -1, ``time`` infinite, and the rest NaN.
+        poses  where the mesh's bodies rest meanwhile, as for `query`
         out    (capacity, 13) int32, of float64 (capacity, 22): what ``records`` is
 
         Other arguments, errors and costs as for `query`.
@@ -375,7 +377,7 @@ class Mesh:
         refuse(first and out is not None, "out", "of the first impacts is not taken")
         refuse(first and capacity is not None, "capacity", "there is an impact for each sphere")
         asked = "earliest" if first else "impacts", centres, radius, displacements, "exact"
-        return self._ask(self._mesh.query, Impacts, out, *asked, order=order, capacity=capacity)
+        return self._ask(self._mesh.query, Impacts, out, *asked, order=order, capacity=capacity, poses=poses)
 
     def nearest(
         self, points: Array, *, max_distance: float = math.inf, poses: Optional[Poses] = None,
@@ -396,7 +398,8 @@ class Mesh:
         return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, _reach(max_distance), poses=poses)
 
     def k_nearest(
-        self, points: Array, k: int, *, max_distance: float = math.inf, out: Optional[Array] = None
+        self, points: Array, k: int, *, max_distance: float = math.inf, poses: Optional[Poses] = None,
+        out: Optional[Array] = None
     ) -> Nearest:
         """The k nearest triangles of each point, by rising distance: ``distance`` has the shape (n, k), ``point`` (n, k,
         3). Where fewer are in reach, the last ones of a row are none.
@@ -407,7 +410,7 @@ class Mesh:
         Other arguments, errors and costs as for `nearest`.
         """
         asked = points, whole("k", k, 1, 32), _reach(max_distance)
-        return self._ask(self._mesh.search, Nearest, out, "k_nearest", *asked)
+        return self._ask(self._mesh.search, Nearest, out, "k_nearest", *asked, poses=poses)
 
     def distance(
         self, points: Array, *, signed: bool = False, max_distance: float = math.inf, poses: Optional[Poses] = None,
@@ -506,11 +509,6 @@ class Mesh:
         found = function(stream, what, centres, *asked, [] if poses is None else _rows(poses), results)
         if kind is int:
             return found
-        if kind is bool or kind is float:
-            if out is not None:
-                return found
-            found = library.array(found, stream)
-            return library.flags(found) if kind is bool else found
         if kind is Csr:
             return Csr(*(library.array(a, stream) for a in found))
         records, size, *total = found
@@ -518,6 +516,10 @@ class Mesh:
             records = library.array(records, stream)
         elif size < len(out):
             records = out[:size]
+        if kind is float or (kind is bool and out is not None):
+            return records
+        if kind is bool:
+            return library.flags(records)
         return kind(library, records, self._is_wide, size, *total)
 
 

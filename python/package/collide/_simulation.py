@@ -2,6 +2,7 @@
 
 import dataclasses
 import os
+import pathlib
 import tempfile
 from typing import Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, Union, overload
 
@@ -177,9 +178,9 @@ class Simulation:
         state = None
         if self._is_set:
             with tempfile.TemporaryDirectory() as folder:
-                self.save(os.path.join(folder, "state"))
-                with open(os.path.join(folder, "state"), "rb") as file:
-                    state = file.read()
+                path = pathlib.Path(folder, "state")
+                self.save(path)
+                state = path.read_bytes()
         return _simulation_of, (self._mesh, self.effects, self._bodies, self._threads, self._options, state)
 
     def set_mesh(self, mesh: Optional[Mesh] = None, bodies: Optional[Iterable[Body]] = None) -> None:
@@ -418,7 +419,7 @@ def _simulation_of(mesh, effects, bodies, threads, options, state):
     made = Simulation(mesh, effects, bodies=bodies, threads=threads, **options)
     if state is not None:
         with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "state"), "wb") as file:
-                file.write(state)
-            made.load(os.path.join(folder, "state"))
+            path = pathlib.Path(folder, "state")
+            path.write_bytes(state)
+            made.load(path)
     return made

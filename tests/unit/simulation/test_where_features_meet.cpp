@@ -1,5 +1,6 @@
 /// Where features meet, on the host and as blocks of threads go.
 #include "compositions.hpp"
+#include "simulation/clumps.hpp"
 #include "simulation/where_features_meet.hpp"
 
 using collide::host;
@@ -111,4 +112,10 @@ TEST_CASE("where features meet: what sleeps on one whose place a source takes fa
   tests::check_place_far_away<semi_implicit_euler, double>(host(1));
   tests::check_place_far_away<velocity_verlet, double>(host(1));
   tests::check_place_far_away<velocity_verlet, float>(blocks());
+}
+
+TEST_CASE("where features meet: clumps press with their weight, go with a belt, and meet across the sides of a box") {
+  tests::check_weight_of_clumps<double>(host(1));
+  tests::check_weight_of_clumps<float>(blocks());
+  tests::check_clumps_in_boxes(host(1));
 }

@@ -2,6 +2,7 @@
 /// Bodies with poses in a space, against a loop over all triangles.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -14,7 +15,11 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/detectors/posed.hpp>
+#include <collide/karabassi_swept.hpp>
 #include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
+#include <collide/sinks/k_nearest.hpp>
 #include <collide/spaces/upload.hpp>
 
 #include "nearest/point_cases.hpp"
@@ -309,6 +314,121 @@ void check_posed_nearest(typename Detector::execution_space const& space) {
   for (std::size_t i = 6; i < n; ++i) CHECK(to_surface[i].distance == to_centre[i].distance - scene.radii[i]);
   robot.build(collide::mesh_view<S>(), {});
   CHECK(robot.query(there.view(), {}, collide::nearest<S>()).to_host()[n - 1].triangle == collide::no_id);
+}
+
+/// The k nearest triangles of all bodies, each searched alone in its frame.
+template <class Detector>
+void check_posed_k_nearest(typename Detector::execution_space const& space) {
+  using S = typename Detector::scalar;
+  using collide::detail::rounded_to;
+  posed_scene<S> scene;
+  std::size_t const n = scene.radii.size();
+  auto const mesh = collide::upload(space, scene.mesh());
+  auto const on_host = collide::spheres_xyz(scene.xyz.data(), n, S(0));
+  auto const there = collide::upload(space, on_host);
+  auto const owners = scene.owners();
+  collide::posed<Detector> robot(space);
+  robot.build(mesh.view(), scene.bodies);
+  for (S const most : {std::numeric_limits<S>::infinity(), S(0.5)}) {
+    auto const poses = scene.any_poses();
+    std::vector<collide::detail::frame_pose> frames(1 + poses.size());
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      collide::body_state state;
+      if (k != 0) state.at = poses[k - 1];
+      collide::detail::make_unit(state);
+      frames[k] = collide::detail::frame_pose_of(state.at);
+    }
+    constexpr int k = 12;
+    auto const found = robot.query(there.view().centres(), poses, collide::k_nearest<S>(k, most)).to_host();
+    REQUIRE(found.size() == k * n);
+    std::size_t wrong = 0, none = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      std::vector<collide::nearest_triangle<S>> all(scene.triangles());
+      for (collide::id t = 0; t < all.size(); ++t) {
+        auto centre = on_host.centre(i);
+        auto const& frame = frames[owners[t]];
+        if (owners[t] != 0) centre = rounded_to<S>(frame.to_local(centre.template cast<double>()));
+        collide::detail::nearest_search<S, collide::exact> alone(centre, most);
+        alone.consider(scene.mesh()[t], t);
+        all[t] = alone.result();
+        if (owners[t] != 0 && all[t].triangle != collide::no_id)
+          all[t].point = rounded_to<S>(frame.to_world(all[t].point.template cast<double>()));
+      }
+      auto sorted = all;
+      std::sort(sorted.begin(), sorted.end(), [](auto const& a, auto const& b) { return a.distance < b.distance; });
+      for (std::size_t j = 0; j < k; ++j) {
+        auto const& one = found[k * i + j];
+        none += one.triangle == collide::no_id;
+        wrong += one.distance != sorted[j].distance;
+        if (one.triangle == collide::no_id) continue;
+        wrong += !(one.point == all[one.triangle].point) || one.distance != all[one.triangle].distance;
+        for (std::size_t m = 0; m < j; ++m) wrong += found[k * i + m].triangle == one.triangle;
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK(none >= 2 * k);
+    CHECK(none < k * n);
+  }
+}
+
+/// Spheres that move past bodies that rest in their poses: every impact is that of the sphere as its body sees it.
+template <class Detector>
+void check_posed_impacts(typename Detector::execution_space const& space) {
+  using S = typename Detector::scalar;
+  using collide::detail::rounded_to;
+  posed_scene<S> scene;
+  std::size_t const n = scene.radii.size();
+  std::vector<S> paths;
+  for (std::size_t i = 0; i < 3 * n; ++i) paths.push_back(i % 30 < 3 ? S(0) : 2 * scene.uniform());
+  paths[20] = std::numeric_limits<S>::quiet_NaN(), paths[31] = std::numeric_limits<S>::infinity();
+  auto const mesh = collide::upload(space, scene.mesh());
+  auto const owners = scene.owners();
+  collide::posed<Detector> robot(space);
+  robot.build(mesh.view(), scene.bodies);
+  for (bool const one_radius : {false, true}) {
+    auto const resting = one_radius ? collide::spheres_xyz(scene.xyz.data(), n, S(0.125))
+                                    : collide::spheres_xyz(scene.xyz.data(), n, scene.radii.data());
+    auto const spheres = collide::with_displacements(resting, paths.data());
+    auto const spheres_there = collide::upload(space, resting);
+    auto const paths_there = collide::upload(space, collide::spheres_xyz(paths.data(), n, S(0)));
+    auto const there = collide::with_displacements(spheres_there.view(), paths_there.view().centres());
+    auto const poses = scene.any_poses();
+    auto const found = robot.query(there, poses, collide::impacts<S>(collide::order::canonical)).to_host();
+    std::vector<S> first(n, std::numeric_limits<S>::infinity());
+    std::size_t place = 0, wrong = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t t = 0; t < scene.triangles(); ++t) {
+        collide::moving_sphere<S> seen = spheres[i];
+        collide::body_state state;
+        if (owners[t] != 0) state.at = poses[owners[t] - 1];
+        collide::detail::make_unit(state);
+        auto const frame = collide::detail::frame_pose_of(state.at);
+        if (owners[t] != 0) {
+          auto const begin = seen.centre.template cast<double>(), path = seen.displacement.template cast<double>();
+          auto const from = frame.to_local(begin), to = frame.to_local(begin + path);
+          seen.centre = rounded_to<S>(from);
+          seen.displacement = rounded_to<S>(to - from);
+        }
+        if (!collide::karabassi_swept<>::intersects(scene.mesh()[t], seen)) continue;
+        auto expected = collide::karabassi_swept<>::impact_of(scene.mesh()[t], seen);
+        if (owners[t] != 0)
+          expected.contact.point = rounded_to<S>(frame.to_world(expected.contact.point.template cast<double>()));
+        first[i] = std::min(first[i], expected.time);
+        if (place == found.size()) {
+          ++wrong;
+          continue;
+        }
+        auto const& one = found[place++];
+        wrong += one.contact.sphere != i || one.contact.triangle != t || one.time != expected.time ||
+                 !(one.contact.point == expected.contact.point) || one.contact.depth != expected.contact.depth;
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK(place == found.size());
+    CHECK(place > 250);
+    auto const earliest = robot.query(there, poses, collide::earliest<S>()).to_host();
+    for (std::size_t i = 0; i < n; ++i) CHECK(earliest[i].time == first[i]);
+  }
 }
 
 /// Closed links, one turned inside out, that overlap each other; one is far from its own origin, one has no triangles,

@@ -36,6 +36,17 @@ TEST_CASE("posed: the nearest triangle of all bodies, as a loop finds it") {
   tests::check_posed_nearest<detector<bvh>>(host(1));
 }
 
+TEST_CASE("posed: the k nearest triangles of all bodies, as a loop finds them") {
+  tests::check_posed_k_nearest<tree_of_double>(host(2));
+  tests::check_posed_k_nearest<detector<bvh>>(host(1));
+}
+
+TEST_CASE("posed: impacts of spheres that move past bodies, as a loop finds them") {
+  tests::check_posed_impacts<detector<bucket, collide::karabassi_swept<>>>(host(2));
+  tests::check_posed_impacts<detector<bvh, collide::karabassi_swept<>, host, double>>(host(1));
+  tests::check_posed_impacts<detector<bucket, collide::karabassi_swept<>, in_lockstep>>(in_lockstep(1));
+}
+
 TEST_CASE("posed: inside, and the signed distance of all bodies, as each says alone") {
   tests::check_posed_sides<tree_of_double>(host(2));
   tests::check_posed_sides<detector<bvh>>(host(1));

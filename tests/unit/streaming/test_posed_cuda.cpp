@@ -21,3 +21,11 @@ TEST_CASE("posed: inside, and the signed distance of all bodies, as each says al
 TEST_CASE("posed: the nearest triangle of all bodies, as a loop finds it, on CUDA") {
   tests::check_posed_nearest<detector<bvh, karabassi<>, cuda_shared>>(cuda_shared());
 }
+
+TEST_CASE("posed: the k nearest triangles of all bodies, as a loop finds them, on CUDA") {
+  tests::check_posed_k_nearest<detector<bvh, karabassi<>, cuda_shared>>(cuda_shared());
+}
+
+TEST_CASE("posed: impacts of spheres that move past bodies, as a loop finds them, on CUDA") {
+  tests::check_posed_impacts<detector<bucket, collide::karabassi_swept<>, cuda_shared>>(cuda_shared());
+}

@@ -110,7 +110,7 @@ struct found_query {
   template <class Output>
   void operator()(Output const& output) const {
     space.for_each(size, hand_over<NarrowPhase, S, Mesh, Output>{pairs, mesh, spheres, output});
-    if constexpr (has_end_pass<Output>::value) {
+    if constexpr (is_valid<end_pass_call, Output>) {
       if (wants_end_pass(output)) space.for_each(1, end_pass_kernel<Output>{output});
     }
   }

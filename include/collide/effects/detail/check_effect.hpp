@@ -80,9 +80,9 @@ constexpr bool check_effect() {
     static_assert(has_end_step<E, S>::value || is_valid<m::template end_step, E>,
                   "collide: an effect's end_step is called as end_step(particle&, dt) const, with any particle");
     static_assert(
-        has_begin_step<E, Space, state, S>::value || is_valid<m::template begin_step, E>,
+        has_begin_step<E, Space, state, S> || is_valid<m::template begin_step, E>,
         "collide: an effect's begin_step is called as begin_step(space&, state, dt), with any space and state");
-    static_assert(checks_parameters<E>::value || is_valid<m::template check_parameters, E>,
+    static_assert(is_valid<check_parameters_call, E> || is_valid<m::template check_parameters, E>,
                   "collide: an effect's check_parameters is called as check_parameters() const");
   }
   return true;

@@ -14,10 +14,6 @@
 #include <collide/core/memory.hpp>
 #include <collide/effects/detail/particle.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 template <class C, class S>
@@ -249,5 +245,3 @@ class contact_access {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -48,7 +48,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   static constexpr bool any_pair_contact = (pairs_in<E, S> || ...);
   static constexpr bool repeats = any_pair_contact && (repeats_space<E> || ...);  ///< particles meet across a box
   using space_type = std::conditional_t<repeats, repeating_box<S>, open_space>;
-  using remembered = union_of<columns<>, typename remembers_of<E>::type...>;  ///< by contacts between particles
+  using remembered = union_of<columns<>, remembers_of<E>...>;  ///< by contacts between particles
   static constexpr bool any_end_step = (has_end_step<E, S>::value || ...);
   static constexpr bool any_mesh_impulse = (has_on_mesh_impulse<E, S>::value || ...);
   static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
@@ -59,17 +59,17 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       (has_on_mesh_contact<E, S>::value || ...) || (has_after_mesh_contact<E, S>::value || ...) ||
       (any_mesh_impulse && !overlaps);
   static constexpr bool any_resistance = (has_resistance<E, S>::value || ...);
-  static constexpr bool flows = (flows_in<E, S>::value || ...);
+  static constexpr bool flows = (flows_in<E, S> || ...);
 
   using base = columns<position, velocity>;
-  using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
+  using named = union_of<base, reads_of<E>..., writes_of<E>...>;
   static constexpr bool adheres = any_mesh_contact && contains<named, adhered>;
+  static constexpr bool has_clumps = contains<named, in_clump>;
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
   /// Particles that sleep still press on what they lie on.
   static constexpr bool keeps_support = any_mesh_impulse && contains<named, slow_steps>;
   /// Effects that know no mesh may hold particles where they are.
-  static constexpr bool holds_without_mesh =
-      ((has_end_step<E, S>::value && contains<typename writes_of<E>::type, velocity>) || ...);
+  static constexpr bool holds_without_mesh = ((has_end_step<E, S>::value && contains<writes_of<E>, velocity>) || ...);
   /// The effect of particles on each other is kept as an acceleration, for each half kick, for adhesion and for
   /// sleepers.
   static constexpr bool keeps_pair_forces =
@@ -100,14 +100,12 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   /// Columns that `E` reads or writes in a member, if it `Has` it.
   template <class F, bool Has>
   using reads_if = std::conditional_t<Has,
-                                      union_of<typename reads_of<F>::type, typename writes_of<F>::type,
-                                               intersection_of<typename optional_writes_of<F>::type, all>,
-                                               intersection_of<typename optional_reads_of<F>::type, all>>,
+                                      union_of<reads_of<F>, writes_of<F>, intersection_of<optional_writes_of<F>, all>,
+                                               intersection_of<optional_reads_of<F>, all>>,
                                       columns<>>;
   template <class F, bool Has>
-  using writes_if = std::conditional_t<
-      Has, union_of<typename writes_of<F>::type, intersection_of<typename optional_writes_of<F>::type, all>>,
-      columns<>>;
+  using writes_if =
+      std::conditional_t<Has, union_of<writes_of<F>, intersection_of<optional_writes_of<F>, all>>, columns<>>;
   template <class F>
   static constexpr bool is_integrated = changes_velocity<F, S> || has_end_step<F, S>::value ||
                                         has_is_inactive<F, S>::value || has_holds<F, S>::value ||
@@ -121,6 +119,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       pairs_in<F, S> || has_try_wake<F, S>::value || has_is_inactive<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
   using own_number = intersection_of<columns<global_number>, all>;
+  using own_clump = intersection_of<columns<in_clump>, all>;
   using own_in_contact = intersection_of<columns<in_contact>, all>;
   using own_slow_steps = columns_if<(is_moving_bodies<E> || ...) && contains<all, slow_steps>, slow_steps>;
   template <bool Needed>
@@ -132,7 +131,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   /// Columns that are read and written for every particle,
   using integration_reads =
       union_of<base, reads_if<E, is_integrated<E>>..., radius_if<any_mesh_contact || keeps_support>, own_number,
-               pair_kicks, columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
+               own_clump, pair_kicks, columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
   using integration_writes = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
                                       columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns,
                                       writes_if<E, writes_while_integrated<E>>...>;
@@ -426,10 +425,10 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   COLLIDE_HD_INLINE bool meet_with_memory_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
                                              [[maybe_unused]] bool overlap, [[maybe_unused]] Values& values,
                                              [[maybe_unused]] S elapsed, [[maybe_unused]] S dt) const {
-    if constexpr (remembers_in<F, S>::value) {
+    if constexpr (remembers_in<F, S>) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_self(self), seen_other(other);
-      contact_access<typename remembers_of<F>::type, Values, S> const memory(values, elapsed);
+      contact_access<remembers_of<F>, Values, S> const memory(values, elapsed);
       return of<F>().on_pair_contact(seen, seen_self, seen_other, memory, dt);
     } else {
       if (overlap || follows_pair_contacts<F>) on_pair_contact_of<F>(p, self, other, dt);
@@ -443,8 +442,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
     if constexpr (overlaps_in<F, S>) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_self(self);
-      if constexpr (overlaps_with_memory<F, S>::value) {
-        contact_access<typename remembers_of<F>::type, Values, S> const memory(values, elapsed);
+      if constexpr (overlaps_with_memory<F, S>) {
+        contact_access<remembers_of<F>, Values, S> const memory(values, elapsed);
         return of<F>().on_mesh_overlap(seen, seen_self, o, memory, dt);
       } else {
         of<F>().on_mesh_overlap(seen, seen_self, o, dt);

@@ -7,7 +7,6 @@
 #include <collide/effects/detail/particle_access.hpp>
 #include <collide/effects/detail/resistance.hpp>
 #include <collide/effects/integrators.hpp>
-#include <collide/query/concepts.hpp>
 
 namespace collide::detail {
 
@@ -19,8 +18,7 @@ inline constexpr bool is_mutual_effect<E, std::void_t<decltype(E::is_mutual)>> =
 
 /// Sees all that an effect names; only to ask what members the effect has.
 template <class E, class S>
-using archetype = particle<S, union_of<typename reads_of<E>::type, typename writes_of<E>::type,
-                                       typename optional_writes_of<E>::type, typename optional_reads_of<E>::type>>;
+using archetype = particle<S, union_of<reads_of<E>, writes_of<E>, optional_writes_of<E>, optional_reads_of<E>>>;
 template <class E, class S>
 using archetype_access = particle_access<E, archetype<E, S>>;
 
@@ -44,11 +42,9 @@ using resistance_call = decltype(std::declval<E const&>().resistance(std::declva
 template <class E, class S>
 using has_resistance = std::bool_constant<is_valid<resistance_call, E, S>>;
 /// Wind: what resists motion in a medium that may move.
-template <class E, class S, class = void>
-struct flows_in : std::false_type {};
 template <class E, class S>
-struct flows_in<E, S, std::void_t<resistance_call<E, S>>>
-    : std::bool_constant<!std::is_same<resistance_call<E, S>, medium_at_rest>::value> {};
+inline constexpr bool flows_in =
+    !std::is_same<detected_or<medium_at_rest, resistance_call, E, S>, medium_at_rest>::value;
 template <class E, class S>
 inline constexpr bool changes_velocity = has_accelerate<E, S>::value || has_resistance<E, S>::value;
 template <class E, class S>
@@ -79,42 +75,30 @@ template <class E, class S>
 using has_on_pair_contact = std::bool_constant<is_valid<on_pair_contact_call, E, S>>;
 /// True for an effect whose `on_pair_contact` has what contacts remember as its fourth argument.
 template <class E, class S>
-using archetype_memory =
-    contact_access<typename remembers_of<E>::type, contact_values<S, typename remembers_of<E>::type>, S>;
-template <class E, class S, class = void>
-struct remembers_in : std::false_type {};
+using archetype_memory = contact_access<remembers_of<E>, contact_values<S, remembers_of<E>>, S>;
 template <class E, class S>
-struct remembers_in<
-    E, S,
-    std::void_t<std::enable_if_t<remembers_of<E>::type::size != 0>,
-                decltype(std::declval<E const&>().on_pair_contact(
-                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
-                    std::declval<archetype_access<E, S> const&>(), std::declval<archetype_memory<E, S> const&>(),
-                    S{}))>> : std::true_type {};
+using on_pair_contact_with_memory_call = decltype(std::declval<E const&>().on_pair_contact(
+    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+    std::declval<archetype_access<E, S> const&>(), std::declval<archetype_memory<E, S> const&>(), S{}));
 template <class E, class S>
-inline constexpr bool pairs_in = has_on_pair_contact<E, S>::value || remembers_in<E, S>::value;
+inline constexpr bool remembers_in = remembers_of<E>::size != 0 && is_valid<on_pair_contact_with_memory_call, E, S>;
+template <class E, class S>
+inline constexpr bool pairs_in = has_on_pair_contact<E, S>::value || remembers_in<E, S>;
 /// True for an effect with `on_mesh_overlap`, if it remembers nothing, or with what the contact remembers.
-template <class E, class S, class = void>
-struct overlaps_without_memory : std::false_type {};
 template <class E, class S>
-struct overlaps_without_memory<
-    E, S,
-    std::void_t<std::enable_if_t<remembers_of<E>::type::size == 0>,
-                decltype(std::declval<E const&>().on_mesh_overlap(
-                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
-                    std::declval<mesh_overlap<S> const&>(), S{}))>> : std::true_type {};
-template <class E, class S, class = void>
-struct overlaps_with_memory : std::false_type {};
+using on_mesh_overlap_call = decltype(std::declval<E const&>().on_mesh_overlap(
+    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+    std::declval<mesh_overlap<S> const&>(), S{}));
 template <class E, class S>
-struct overlaps_with_memory<
-    E, S,
-    std::void_t<std::enable_if_t<remembers_of<E>::type::size != 0>,
-                decltype(std::declval<E const&>().on_mesh_overlap(
-                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
-                    std::declval<mesh_overlap<S> const&>(), std::declval<archetype_memory<E, S> const&>(), S{}))>>
-    : std::true_type {};
+using on_mesh_overlap_with_memory_call = decltype(std::declval<E const&>().on_mesh_overlap(
+    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+    std::declval<mesh_overlap<S> const&>(), std::declval<archetype_memory<E, S> const&>(), S{}));
 template <class E, class S>
-inline constexpr bool overlaps_in = overlaps_without_memory<E, S>::value || overlaps_with_memory<E, S>::value;
+inline constexpr bool overlaps_with_memory =
+    remembers_of<E>::size != 0 && is_valid<on_mesh_overlap_with_memory_call, E, S>;
+template <class E, class S>
+inline constexpr bool overlaps_in = overlaps_with_memory<E, S> ||
+                                    (remembers_of<E>::size == 0 && is_valid<on_mesh_overlap_call, E, S>);
 template <class E, class S>
 using try_wake_call = decltype(std::declval<E const&>().try_wake(std::declval<archetype_access<E, S>&>(),
                                                                  std::declval<archetype_access<E, S> const&>()));
@@ -142,13 +126,11 @@ struct forces_on {
 };
 template <class E, class S>
 struct has_end_step : std::bool_constant<has_end_step_alone<E, S>::value || asks_forces<E>> {};
-template <class E, class Space, class State, class S, class = void>
-struct has_begin_step : std::false_type {};
 template <class E, class Space, class State, class S>
-struct has_begin_step<
-    E, Space, State, S,
-    std::void_t<decltype(std::declval<E&>().begin_step(std::declval<Space&>(), std::declval<State const&>(), S{}))>>
-    : std::true_type {};
+using begin_step_call =
+    decltype(std::declval<E&>().begin_step(std::declval<Space&>(), std::declval<State const&>(), S{}));
+template <class E, class Space, class State, class S>
+inline constexpr bool has_begin_step = is_valid<begin_step_call, E, Space, State, S>;
 
 /// True for an effect that contacts with the mesh concern.
 template <class E, class S>
@@ -169,8 +151,8 @@ inline constexpr bool is_effect = [] {
   } else {
     using state = particle_state<S, typename archetype<E, S>::list>;
     return has_is_inactive<E, S>::value || changes_velocity<E, S> || has_mesh_contact<E, S> || has_holds<E, S>::value ||
-           pairs_in<E, S> || overlaps_in<E, S> || has_end_step<E, S>::value ||
-           has_begin_step<E, Space, state, S>::value || is_integrator<E>::value || archetype<E, S>::list::size != 0;
+           pairs_in<E, S> || overlaps_in<E, S> || has_end_step<E, S>::value || has_begin_step<E, Space, state, S> ||
+           is_integrator<E>::value || archetype<E, S>::list::size != 0;
   }
 }();
 
@@ -184,7 +166,7 @@ template <class... E>
 inline constexpr bool respects_order = true;
 template <class E, class... Later>
 inline constexpr bool respects_order<E, Later...> =
-    !(names<typename runs_after_of<E>::type, Later> || ...) && respects_order<Later...>;
+    !(names<runs_after_of<E>, Later> || ...) && respects_order<Later...>;
 
 /// True of an effect that looks at what others do between particles.
 template <class E, class = void>

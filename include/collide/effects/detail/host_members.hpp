@@ -61,34 +61,27 @@ void check_parameters_of(Effects const& effects) {
 }
 
 /// Calls `check_bodies` of an effect that keeps something for each body.
-template <class E, class = void>
-struct keeps_bodies : std::false_type {};
 template <class E>
-struct keeps_bodies<E, std::void_t<decltype(std::declval<E const&>().check_bodies(std::size_t{}))>> : std::true_type {};
+using check_bodies_call = decltype(std::declval<E const&>().check_bodies(std::size_t{}));
 template <class E, class Effects>
 void check_bodies_of(Effects const& effects, std::size_t bodies) {
-  if constexpr (keeps_bodies<E>::value) effects.template of<E>().check_bodies(bodies);
+  if constexpr (is_valid<check_bodies_call, E>) effects.template of<E>().check_bodies(bodies);
 }
 
 /// Calls `check_particles` and `check_walls` of the materials of an effect, if it has such.
-template <class E, class = void>
-struct has_materials : std::false_type {};
 template <class E>
-struct has_materials<E, std::void_t<decltype(std::declval<E const&>().made_of.check_particles(0))>> : std::true_type {};
+using materials_call = decltype(std::declval<E const&>().made_of.check_particles(0));
 template <class E, class Effects>
 void check_materials_of(Effects const& effects, smallest_radii const& radii) {
-  if constexpr (has_materials<E>::value) effects.template of<E>().made_of.check_particles(radii.largest_material);
+  if constexpr (is_valid<materials_call, E>) effects.template of<E>().made_of.check_particles(radii.largest_material);
 }
 template <class E, class Effects, class Space>
 void check_walls_of(Effects const& effects, Space const& space, std::size_t triangles, std::size_t bodies) {
-  if constexpr (has_materials<E>::value) effects.template of<E>().made_of.check_walls(space, triangles, bodies);
+  if constexpr (is_valid<materials_call, E>) effects.template of<E>().made_of.check_walls(space, triangles, bodies);
 }
 
-template <class E, class Radius, class = void>
-struct limits_step : std::false_type {};
 template <class E, class Radius>
-struct limits_step<E, Radius, std::void_t<decltype(std::declval<E const&>().longest_step(std::declval<Radius>()))>>
-    : std::true_type {};
+using longest_step_call = decltype(std::declval<E const&>().longest_step(std::declval<Radius>()));
 template <class T>
 std::string text_of(T x) {
   std::ostringstream text;
@@ -98,9 +91,9 @@ std::string text_of(T x) {
 /// The longest step that an effect allows, by the radii of each material, or by the smallest of all.
 template <class E, class Effects>
 double longest_step_of(Effects const& effects, smallest_radii const& radii) {
-  if constexpr (limits_step<E, smallest_radii const&>::value) {
+  if constexpr (is_valid<longest_step_call, E, smallest_radii const&>) {
     return effects.template of<E>().longest_step(radii);
-  } else if constexpr (limits_step<E, double>::value) {
+  } else if constexpr (is_valid<longest_step_call, E, double>) {
     return effects.template of<E>().longest_step(radii.of_all);
   } else {
     return std::numeric_limits<double>::infinity();
@@ -155,7 +148,7 @@ void begin_step_of(Effects& effects, Space& space, State const& state, S dt) {
   if constexpr (is_source<E>) {
     constexpr bool marks = Effects::any_pair_contact || Effects::remembers_surfaces;
     effects.template of<E>().begin_step(space, state, dt, marks ? newborn : std::uint8_t{1});
-  } else if constexpr (has_begin_step<E, Space, State, S>::value) {
+  } else if constexpr (has_begin_step<E, Space, State, S>) {
     effects.template of<E>().begin_step(space, state, dt);
   }
 }

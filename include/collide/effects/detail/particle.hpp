@@ -7,10 +7,6 @@
 #include <collide/effects/detail/column_list.hpp>
 #include <collide/exact/detail/numeric/pack.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// A value of a column is `width` numbers of type `element`, one after the other.
@@ -283,19 +279,21 @@ struct particle_state<S, columns<C...>>
     }
   }
 
-  template <class Block, class D, class Q, int N>
+  template <class Block, class D, class Q, std::size_t N>
   COLLIDE_HD_INLINE void load_values(Block& block, D, Q (&read)[N], std::size_t first) const {
     block.load_striped(reinterpret_cast<Q const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_pack),
                        read);
   }
 
-  template <class Block, class D, class Q, int N, class P>
+  template <class Block, class D, class Q, std::size_t N, class P>
   COLLIDE_HD_INLINE void take_values(Block& block, pack_scratch<Block>& s, D, Q (&read)[N], P* p) const {
     block.striped_to_blocked(s, read);
+    constexpr int width = int(N);
     COLLIDE_UNROLL
     for (int k = 0; k < particles_per_pack; ++k) {
       COLLIDE_UNROLL
-      for (int c = 0; c < N; ++c) column_layout<D, S>::at(p[k][D{}], c) = read[(k * N + c) / 4].v[(k * N + c) % 4];
+      for (int c = 0; c < width; ++c)
+        column_layout<D, S>::at(p[k][D{}], c) = read[(k * width + c) / 4].v[(k * width + c) % 4];
     }
   }
 
@@ -304,7 +302,7 @@ struct particle_state<S, columns<C...>>
     using layout = column_layout<D, S>;
     using pack_type = pack4<column_element<D, S>>;
     constexpr int width = layout::width;
-    pack_type write[width];
+    pack_type write[std::size_t(width)];
     COLLIDE_UNROLL
     for (int k = 0; k < particles_per_pack; ++k) {
       COLLIDE_UNROLL
@@ -316,5 +314,3 @@ struct particle_state<S, columns<C...>>
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

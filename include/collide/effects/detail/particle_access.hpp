@@ -4,60 +4,36 @@
 
 #include <type_traits>
 
+#include <collide/core/detail/detected.hpp>
 #include <collide/effects/detail/particle.hpp>
 #include <collide/effects/effect.hpp>
 
 namespace collide::detail {
 
-template <class E, class = void>
-struct reads_of {
-  using type = columns<>;
-};
 template <class E>
-struct reads_of<E, std::void_t<typename E::reads>> {
-  using type = typename E::reads;
-};
-template <class E, class = void>
-struct writes_of {
-  using type = columns<>;
-};
+using reads_member = typename E::reads;
 template <class E>
-struct writes_of<E, std::void_t<typename E::writes>> {
-  using type = typename E::writes;
-};
-template <class E, class = void>
-struct optional_writes_of {
-  using type = columns<>;
-};
+using reads_of = detected_or<columns<>, reads_member, E>;
 template <class E>
-struct optional_writes_of<E, std::void_t<typename E::optional_writes>> {
-  using type = typename E::optional_writes;
-};
-template <class E, class = void>
-struct optional_reads_of {
-  using type = columns<>;
-};
+using writes_member = typename E::writes;
 template <class E>
-struct optional_reads_of<E, std::void_t<typename E::optional_reads>> {
-  using type = typename E::optional_reads;
-};
-template <class E, class = void>
-struct runs_after_of {
-  using type = effects<>;
-};
+using writes_of = detected_or<columns<>, writes_member, E>;
 template <class E>
-struct runs_after_of<E, std::void_t<typename E::runs_after>> {
-  using type = typename E::runs_after;
-};
-
-template <class E, class = void>
-struct remembers_of {
-  using type = columns<>;
-};
+using optional_writes_member = typename E::optional_writes;
 template <class E>
-struct remembers_of<E, std::void_t<typename E::remembers>> {
-  using type = typename E::remembers::list;
-};
+using optional_writes_of = detected_or<columns<>, optional_writes_member, E>;
+template <class E>
+using optional_reads_member = typename E::optional_reads;
+template <class E>
+using optional_reads_of = detected_or<columns<>, optional_reads_member, E>;
+template <class E>
+using runs_after_member = typename E::runs_after;
+template <class E>
+using runs_after_of = detected_or<effects<>, runs_after_member, E>;
+template <class E>
+using remembers_member = typename E::remembers;
+template <class E>
+using remembers_of = typename detected_or<contact_columns<>, remembers_member, E>::list;
 
 /// By how many of its radii more than its radius a particle sees the mesh for an effect, or for a law of cohesion.
 template <class E, class = void>
@@ -84,11 +60,9 @@ class particle_access {
 
   template <class C>
   COLLIDE_HD_INLINE decltype(auto) operator[](C) const {
-    constexpr bool writes = contains<typename writes_of<Effect>::type, C> ||
-                            (contains<typename optional_writes_of<Effect>::type, C> && has<C>);
+    constexpr bool writes = contains<writes_of<Effect>, C> || (contains<optional_writes_of<Effect>, C> && has<C>);
     static_assert(
-        writes || contains<typename reads_of<Effect>::type, C> ||
-            (contains<typename optional_reads_of<Effect>::type, C> && has<C>),
+        writes || contains<reads_of<Effect>, C> || (contains<optional_reads_of<Effect>, C> && has<C>),
         "collide: an effect may use a column only if it names it in its reads or writes, or in its optional_writes "
         "or optional_reads and the scene has it");
     if constexpr (writes) {

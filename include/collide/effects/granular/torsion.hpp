@@ -22,10 +22,9 @@ inline constexpr bool has_twist_angle<columns<C...>> = (std::is_same_v<C, twist_
 /// A law of rolling, and a spring, a dashpot and a slider about the normal.
 template <class Rolling>
 struct with_torsion {
-  static_assert(!has_twist_angle<typename remembers_of<Rolling>::type>,
+  static_assert(!has_twist_angle<remembers_of<Rolling>>,
                 "collide: torsion and marshall contain a law of rolling, and not a second law of torsion");
-  using remembers =
-      typename contact_columns_of<union_of<columns<twist_angle>, typename remembers_of<Rolling>::type>>::type;
+  using remembers = typename contact_columns_of<union_of<columns<twist_angle>, remembers_of<Rolling>>>::type;
   static constexpr bool needs_hertz = detail::needs_hertz<Rolling>;  ///< the normal law must be `hertz`
 
  protected:

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <collide/core/detail/detected.hpp>
 #include <collide/core/moving_spheres.hpp>
 
 namespace collide::detail {
@@ -30,21 +31,16 @@ template <class NarrowPhase, class S>
 inline constexpr bool is_discrete = std::is_same<sphere_view_for<NarrowPhase, S>, sphere_view<S>>::value;
 
 /// True if the narrow phase has a static member contact_of(triangle<S>, Sphere), Sphere as `sphere_view_for` has it.
-template <class N, class S, class = void>
-struct has_contact : std::false_type {};
 template <class N, class S>
-struct has_contact<
-    N, S,
-    std::void_t<decltype(N::contact_of(std::declval<triangle<S> const&>(), std::declval<moving_sphere<S> const&>()))>>
-    : std::true_type {};
+using contact_call =
+    decltype(N::contact_of(std::declval<triangle<S> const&>(), std::declval<moving_sphere<S> const&>()));
+template <class N, class S>
+inline constexpr bool has_contact = is_valid<contact_call, N, S>;
 
 /// True if the narrow phase has a static member impact_of(triangle<S>, moving_sphere<S>).
-template <class N, class S, class = void>
-struct has_impact : std::false_type {};
 template <class N, class S>
-struct has_impact<
-    N, S,
-    std::void_t<decltype(N::impact_of(std::declval<triangle<S> const&>(), std::declval<moving_sphere<S> const&>()))>>
-    : std::true_type {};
+using impact_call = decltype(N::impact_of(std::declval<triangle<S> const&>(), std::declval<moving_sphere<S> const&>()));
+template <class N, class S>
+inline constexpr bool has_impact = is_valid<impact_call, N, S>;
 
 }  // namespace collide::detail

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <collide/core/detail/detected.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/exact/detail/geometry/swept_bounds.hpp>
 #include <collide/narrow/detail/intersects.hpp>
@@ -15,20 +16,18 @@
 namespace collide::detail {
 
 /// True for outputs that want to know when all hits of a pass are stored; see concepts.hpp.
-template <class Output, class = void>
-struct has_end_pass : std::false_type {};
 template <class Output>
-struct has_end_pass<Output, std::void_t<decltype(std::declval<Output const&>().end_pass())>> : std::true_type {};
+using end_pass_call = decltype(std::declval<Output const&>().end_pass());
 
 template <class Output>
 COLLIDE_HD_INLINE void end_pass([[maybe_unused]] Output const& output) {
-  if constexpr (has_end_pass<Output>::value) output.end_pass();
+  if constexpr (is_valid<end_pass_call, Output>) output.end_pass();
 }
 
 /// False if the output has no use for `end_pass` in this pass, though its type has one.
 template <class Output>
 bool wants_end_pass(Output const&) {
-  return has_end_pass<Output>::value;
+  return is_valid<end_pass_call, Output>;
 }
 
 /// Kernel functor of `for_each` over one item.

@@ -161,7 +161,7 @@ void query_pass<Index, NarrowPhase, Space, S>::operator()(Output const& output) 
       index.template query<NarrowPhase>(space, spheres, output);
     }
   }
-  if constexpr (has_end_pass<Output>::value) {
+  if constexpr (is_valid<end_pass_call, Output>) {
     if (wants_end_pass(output)) space.for_each(1, end_pass_kernel<Output>{output});
   }
 }

@@ -292,7 +292,7 @@ class part_of_simulation {
     if (!listed.empty()) simulation_.space_.copy_to_host(listed.data(), leaving.data(), listed.size());
     std::vector<id> const numbers = on_host<global_number>();
     std::vector<std::pair<id, int>> found;
-    for (pair const& one : listed) found.emplace_back(numbers[one.triangle], static_cast<int>(one.sphere));
+    for (pair const& route : listed) found.emplace_back(numbers[item_of(route)], rank_of(route));
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -372,7 +372,7 @@ class part_of_simulation {
     if (!listed.empty()) space().copy_to_host(listed.data(), of.data(), listed.size());
     std::vector<std::uint32_t> places;
     places.reserve(listed.size());
-    for (pair const& one : listed) places.push_back(one.triangle);
+    for (pair const& route : listed) places.push_back(item_of(route));
     std::uint64_t sorted = 0;
     for (std::uint64_t const more : of.counts()) {
       auto const middle = places.begin() + static_cast<std::ptrdiff_t>(sorted);

@@ -29,7 +29,7 @@ inline constexpr bool begins_on_ranks<E, std::void_t<decltype(E::begins_on_ranks
 /// Refuses an effect that would do something else on ranks than on one.
 template <class E, class Space, class State, class S>
 constexpr bool check_on_ranks() {
-  static_assert(!has_begin_step<E, Space, State, S>::value || begins_on_ranks<E>,
+  static_assert(!has_begin_step<E, Space, State, S> || begins_on_ranks<E>,
                 "collide: an effect's begin_step sees the places of one rank alone: if it does the same to particles "
                 "wherever they are, the effect says static constexpr bool begins_on_ranks = true");
   return true;

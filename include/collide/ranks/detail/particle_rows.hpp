@@ -40,7 +40,7 @@ struct places_from {
 /// Places of particles that go to ranks.
 struct routed_places {
   pair const* routes;
-  COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return routes[i].triangle; }
+  COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return item_of(routes[i]); }
 };
 
 /// Kernel functor of `for_each` over rows: copies particles from their places.

@@ -63,7 +63,7 @@ struct take_nearest {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     if (answers[i].number == no_id) return;
-    so_far.consider(routes[i].triangle, answers[i].shape(), answers[i].number);
+    so_far.consider(item_of(routes[i]), answers[i].shape(), answers[i].number);
   }
 };
 

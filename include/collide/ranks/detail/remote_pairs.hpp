@@ -32,7 +32,7 @@ struct pack_spheres {
   pair const* routes;
   Sent* to;
   COLLIDE_HD void operator()(std::size_t i) const {
-    auto const s = spheres[routes[i].triangle];
+    auto const s = spheres[item_of(routes[i])];
     for (int k = 0; k < 3; ++k) to[i].numbers[k] = s.centre[k];
     to[i].numbers[3] = s.radius;
     if constexpr (Sent::moves) {
@@ -60,7 +60,7 @@ struct unpack_answers {
   pair const* answers;
   pair const* routes;
   pair* to;
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {routes[answers[i].sphere].triangle, answers[i].triangle}; }
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {item_of(routes[answers[i].sphere]), answers[i].triangle}; }
 };
 
 /// The search for these pairs. A rank queries its own triangles with its spheres where they are. Spheres near triangles

@@ -72,17 +72,22 @@ class pair_bounds {
   buffer<std::uint64_t> numbers_, bounds_;
 };
 
-/// Routes: pairs of a rank and the number of an item that goes there, in canonical order, in memory of a space. 8 bytes
+/// A route is kept as a pair, so that it can be collected and sorted like one: a rank, and an item that goes there.
+COLLIDE_HD_INLINE pair route_of(int rank, std::size_t item) { return {static_cast<id>(rank), static_cast<id>(item)}; }
+COLLIDE_HD_INLINE int rank_of(pair const& route) { return static_cast<int>(route.sphere); }
+COLLIDE_HD_INLINE id item_of(pair const& route) { return route.triangle; }
+
+/// Routes, in canonical order, in memory of a space. 8 bytes
 /// for each, and in the space of a device twice that for the sort.
 class send_plan {
  public:
-  /// Finds the routes of `things` items. `find` is a kernel functor of `for_each`, which is called `calls` times:
+  /// Finds the routes of so many items. `find` is a kernel functor of `for_each`, which is called `calls` times:
   /// `add_send(to, rank, item)`, with its member `to`, lists a route.
   template <class Space, class Find>
-  void find(Space& space, Find const& find, std::size_t calls, std::size_t things, int ranks) {
+  void find(Space& space, Find const& find, std::size_t calls, std::size_t items, int ranks) {
     ends_.resize(static_cast<std::size_t>(ranks) + 1);
     for (std::size_t r = 0; r < ends_.size(); ++r) ends_[r] = r;
-    send_query<Space, Find> const query{space, find, calls, {static_cast<std::size_t>(ranks)}, {things}};
+    send_query<Space, Find> const query{space, find, calls, {static_cast<std::size_t>(ranks)}, {items}};
     list_.fill(space, query);
     list_.sort(space, query);
     bounds_.find(space, list_.data(), list_.size(), ends_);
@@ -116,8 +121,8 @@ class send_plan {
   pair_bounds bounds_;
 };
 
-COLLIDE_HD_INLINE void add_send(output const& to, int rank, std::size_t thing) {
-  to.store(to.allocate(1), pair{static_cast<id>(rank), static_cast<id>(thing)});
+COLLIDE_HD_INLINE void add_send(output const& to, int rank, std::size_t item) {
+  to.store(to.allocate(1), route_of(rank, item));
 }
 
 }  // namespace collide::detail

@@ -38,6 +38,10 @@ class array_per_sphere : public array_in_space<T> {
     if (external_ == nullptr) own_.reserve(space.resource(), spheres * row_);
   }
 
+  /// Entries of later queries are written to the caller's memory (of the space), which must have room for them and stay
+  /// valid as long as this object is used; null: to memory of its own.
+  void write_to(T* entries) { external_ = entries; }
+
  protected:
   /// Entries are kept at `external`, or in memory of the space if that is null.
   explicit array_per_sphere(T* external = nullptr, std::size_t row = 1) : external_{external}, row_{row} {}

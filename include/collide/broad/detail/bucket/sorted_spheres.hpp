@@ -205,7 +205,6 @@ class sorted_spheres {
   /// Sorts the spheres into the cells: of type sphere_view, or swept_bounding_spheres. O(spheres + cells).
   template <class Space, class Spheres>
   void sort(Space& space, Spheres const& spheres) {
-    clear();
     using place = place_spheres<S, Spheres>;
     auto* const total = total_.reserve(space.resource(), 1);
     constexpr std::size_t share = place::batches * 64;
@@ -245,7 +244,6 @@ class sorted_spheres {
     auto* const order = order_.reserve(space.resource(), placed_.capacity());
     each_placed(rank_spheres<S>{placed_.data(), order, counts + 1});
     space.for_each(n, scatter_spheres<S, Spheres>{placed_.data(), order, columns_, spheres});
-    is_empty_ = false;
   }
 
   /// Makes room for up to so many spheres.
@@ -256,13 +254,7 @@ class sorted_spheres {
     order_.reserve(space.resource(), capacity);
     total_.reserve(space.resource(), 1);
     columns_ = columns(space, capacity);
-    clear();
   }
-
-  /// Forgets the spheres.
-  void clear() { is_empty_ = true; }
-  /// True if no spheres have been sorted since.
-  bool empty() const { return is_empty_; }
 
   /// About how many hits a pass over the spheres has, of which there are `all`; 0 if few of them are in cells with
   /// triangles, and so have no more hits than there are spheres, mostly. O(triangles).
@@ -328,7 +320,6 @@ class sorted_spheres {
   buffer<S> numbers_;
   buffer<id> ids_;
   sphere_soa<S> columns_ = {};
-  bool is_empty_ = true;
 };
 
 }  // namespace collide::detail

@@ -119,7 +119,7 @@ class fixed_width_predicate {
 
   COLLIDE_HD int_words<2> narrow(uint128 x) {
     constexpr uint128 limit = uint128{1} << max_bits;
-    fits_ = fits_ && x + limit <= 2 * limit;  // from -most to most
+    fits_ = fits_ && x + limit <= 2 * limit;  // from -limit to limit
     return {{static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(x >> 64)}};
   }
 

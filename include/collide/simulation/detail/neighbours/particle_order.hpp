@@ -83,6 +83,7 @@ struct sorted_particles {
   static constexpr bool repeats = Effects::repeats;
   static constexpr bool sizes_differ = contains<all, radius>;
   static constexpr bool on_ranks = contains<all, global_number>;
+  static constexpr bool has_clumps = contains<all, in_clump>;
   using state_of_lists = std::conditional_t<on_ranks, list_state_on_ranks, list_state>;
 
   typename Effects::space_type space;
@@ -115,6 +116,7 @@ struct sorted_particles {
   std::uint8_t* is_at_border;       ///< by places: not 0 if one on the list is such a copy
   std::uint32_t* border;            ///< those places, as many as there is room for
   std::size_t border_capacity;
+  id const* clumps;  ///< by numbers: `in_clump`; null if the scene has none
 
   COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
 
@@ -197,11 +199,20 @@ struct sorted_particles {
 
   COLLIDE_HD_INLINE void ask_to_rebuild() const { store_relaxed(&header->rebuild, 1u); }
 
+  /// True of two spheres of one clump, which do not meet.
+  COLLIDE_HD_INLINE bool are_rigid([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t k) const {
+    if constexpr (has_clumps) return clumps[numbers[i]] != no_id && clumps[numbers[i]] == clumps[numbers[k]];
+    return false;
+  }
+
   /// f(place, row) for those less than `skin` away from particle i, of which `is_in_row` must still be asked. That
   /// takes a while, in which threads that run together would wait for the one that has found something. If space
   /// repeats, some may be found several times.
   template <class F>
-  COLLIDE_HD_INLINE void for_each_overlapping(std::uint32_t i, S skin, F const& f) const {
+  COLLIDE_HD_INLINE void for_each_overlapping(std::uint32_t i, S skin, F const& found) const {
+    auto const f = [&](std::uint32_t k, int row) {
+      if (!are_rigid(i, k)) found(k, row);
+    };
     if constexpr (repeats) {
       auto const& at = references[i];
       vec3<S> const x(at.x, at.y, at.z);

@@ -336,7 +336,12 @@ class verlet_list {
             places_of_copies_.data(),
             is_at_border_.data(),
             border_.data(),
-            border_.capacity()};
+            border_.capacity(),
+            clumps_of(state)};
+  }
+  static id const* clumps_of([[maybe_unused]] state_type const& state) {
+    if constexpr (order::has_clumps) return state.at(in_clump{});
+    return nullptr;
   }
   static std::size_t own_of(state_type const& state) {
     if constexpr (order::on_ranks) return state.own;

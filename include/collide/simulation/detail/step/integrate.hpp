@@ -22,14 +22,21 @@ namespace collide::detail {
 template <class Context, class Particle>
 COLLIDE_HD_INLINE auto first_kick([[maybe_unused]] Particle const& p) {
   if constexpr (contains<typename Particle::list, held>) {
-    return p[held{}] == 1 ? Context::kick_before + Context::kick_after : Context::kick_before;
+    return p[held{}] == owes_a_kick ? Context::kick_before + Context::kick_after : Context::kick_before;
   } else {
     return Context::kick_before;
   }
 }
 
+/// True of a sphere of a clump, which moves as that does (clump_motion.hpp).
+template <class Particle>
+COLLIDE_HD_INLINE bool is_of_clump([[maybe_unused]] Particle const& p) {
+  if constexpr (contains<typename Particle::list, in_clump>) return p[in_clump{}] != no_id;
+  return false;
+}
+
 /// The beginning of a particle's step. Returns for how long all accelerate it in the first kick: 0 if the mesh holds
-/// it.
+/// it, or it is of a clump.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
   using S = typename Context::scalar;
@@ -40,6 +47,7 @@ COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
       if (n == 1) by = 0;
     });
   }
+  if (is_of_clump(p)) return S(0);
   S const kick = first_kick<Context>(p);
   if constexpr (Context::effects_type::adheres) {
     if (is_stuck(p[adhered{}]) && carry_stuck(context, p, kick)) return S(0);
@@ -68,9 +76,9 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
   }
   if constexpr (contains<typename Particle::list, held>) {
     if constexpr (Context::effects_type::adheres) {
-      if (p[held{}] == 2 && is_stuck(p[adhered{}])) return;  // it stuck all the time
+      if (p[held{}] == stuck_all_along && is_stuck(p[adhered{}])) return;  // it stuck all the time
     }
-    p[held{}] = holds;
+    p[held{}] = holds ? owes_a_kick : std::uint8_t{0};
   }
 }
 
@@ -78,7 +86,7 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
 template <class Context, class Particle>
 COLLIDE_HD_INLINE auto last_kick([[maybe_unused]] Particle const& p) {
   if constexpr (contains<typename Particle::list, held>) {
-    return p[held{}] == 1 ? typename Context::scalar(0) : Context::kick_after;
+    return p[held{}] == owes_a_kick ? typename Context::scalar(0) : Context::kick_after;
   } else {
     return Context::kick_after;
   }
@@ -90,9 +98,9 @@ COLLIDE_HD_INLINE void end_particle(Context const& context, Particle& p) {
   if constexpr (Context::kick_after != 0) {
     int by = 0;
     if constexpr (contains<typename Particle::list, held>) by = p[held{}];
-    if (by == 0) context.effects.accelerate(p, Context::kick_after * context.dt);
+    if (by == 0 && !is_of_clump(p)) context.effects.accelerate(p, Context::kick_after * context.dt);
     if constexpr (Context::effects_type::adheres) {
-      if (by == 2) {
+      if (by == stuck_all_along) {
         Particle next = p;
         context.effects.accelerate(next, Context::kick_after * context.dt);
         record_stuck(context, p, p[velocity{}] - next[velocity{}]);

@@ -171,7 +171,7 @@ COLLIDE_HD_INLINE bool carry_stuck(Context const& context, Particle& p, typename
   if constexpr (!Context::is_swept) path = rounded_to<S>(surface.to) - p[position{}];
   mark_contact(p);
   if (p.number < context.state.size) record_stuck(context, p, rounded_to<S>(given), path);  // behind are places of none
-  if constexpr (contains<typename Particle::list, held>) p[held{}] = 2;
+  if constexpr (contains<typename Particle::list, held>) p[held{}] = stuck_all_along;
   return true;
 }
 

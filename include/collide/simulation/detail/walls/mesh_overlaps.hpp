@@ -14,10 +14,6 @@
 #include <collide/simulation/detail/walls/overlap_list.hpp>
 #include <collide/simulation/detail/walls/surface_memory.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Kernel functor of `for_each` over particles: what a source has just made has not touched the mesh, though the one
@@ -240,9 +236,9 @@ struct press_on_mesh {
     integrated p;
     state.load(p, i);
     integrated const self = p;
-    vec3<S> normals[capacity];
-    id bodies[capacity];
-    values_type values[capacity] = {};
+    vec3<S> normals[std::size_t(capacity)];
+    id bodies[std::size_t(capacity)];
+    values_type values[std::size_t(capacity)] = {};
     kicks_by_mesh<S, Effects> kicks;
     S const elapsed = what == meeting::in_step || before != 0 ? dt : S(0);
     int kept = 0;
@@ -435,5 +431,3 @@ struct sum_over_mesh_contacts : press_on_mesh<S, Effects, Triangles, Memory> {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -9,10 +9,6 @@
 #include <collide/broad/detail/mesh_lookup.hpp>
 #include <collide/effects/detail/contact_memory.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// The memory of a contact with the mesh, and its key: a sphere that slides over a surface goes from triangle to
@@ -105,5 +101,3 @@ class surface_memory<S, columns<>> {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -1,0 +1,165 @@
+/// \file
+/// Kernel bodies in which clumps move, and their spheres with them.
+#pragma once
+
+#include <cstddef>
+
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/clumps.hpp>
+
+namespace collide::detail {
+
+/// A clump. Its spheres are those with numbers from `first` on that say so.
+template <class S, class Effects>
+struct moving_clump {
+  using state_type = particle_state<S, typename Effects::all>;
+  using part = columns<clump_centre, clump_velocity, clump_momentum, clump_rotation, clump_inertia>;
+
+  state_type const& state;
+  id first;
+  particle<S, part> own;
+
+  COLLIDE_HD_INLINE moving_clump(state_type const& of, std::size_t i) : state(of), first(static_cast<id>(i)) {
+    state.load(own, i, part{});
+  }
+
+  /// Forces on all spheres, in their order, and what else accelerates at the centre, for a time.
+  COLLIDE_HD_INLINE void kick(Effects const& effects, S time) {
+    turned_axes<S> const axes(own[clump_rotation{}]);
+    vec3<S> force(S(0), S(0), S(0)), torque = force;  // over the mass
+    S const volume = own[clump_inertia{}].of[3];
+    for_each_sphere([&](std::size_t i) {
+      S const r = state.radius_at(i), share = r * r * r / volume;
+      vec3<S> const arm = axes.to_space(vector(clump_offset{}, i)), by = vector(pair_acceleration{}, i) * share;
+      force += by;
+      torque += cross(arm, by) + vector(pair_angular_acceleration{}, i) * (S(0.4) * r * r * share);
+    });
+    particle<S, typename Effects::integration_reads> p;
+    state.load(p, first);
+    p[position{}] = own[clump_centre{}];
+    p[velocity{}] = own[clump_velocity{}];
+    p[pair_acceleration{}] = force;
+    p[pair_angular_acceleration{}] = vec3<S>(S(0), S(0), S(0));
+    effects.accelerate(p, time);
+    own[clump_velocity{}] = p[velocity{}];
+    own[clump_momentum{}] += torque * time;
+  }
+
+  COLLIDE_HD_INLINE void move(S time) {
+    own[clump_centre{}] += own[clump_velocity{}] * time;
+    turn_freely(own[clump_rotation{}], own[clump_inertia{}], own[clump_momentum{}], time);
+  }
+
+  /// Gives spheres their velocities, and, if it has `moved`, their places.
+  COLLIDE_HD_INLINE void store(bool moved) const {
+    turned_axes<S> const axes(own[clump_rotation{}]);
+    vec3<S> const turning = turning_of(axes, own[clump_inertia{}], own[clump_momentum{}]);
+    state.store(own, first, part{});
+    for_each_sphere([&](std::size_t i) {
+      vec3<S> const arm = axes.to_space(vector(clump_offset{}, i));
+      particle<S, columns<position, velocity, angular_velocity>> p;
+      p[position{}] = own[clump_centre{}] + arm;
+      p[velocity{}] = own[clump_velocity{}] + cross(turning, arm);
+      p[angular_velocity{}] = turning;
+      if (moved) state.store(p, i, columns<position>{});
+      state.store(p, i, columns<velocity, angular_velocity>{});
+    });
+  }
+
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_sphere(F const& f) const {
+    COLLIDE_NO_UNROLL
+    for (std::size_t i = first; i < state.size && state.at(in_clump{})[i] == first; ++i) f(i);
+  }
+
+ private:
+  template <class Column>
+  COLLIDE_HD_INLINE vec3<S> vector(Column, std::size_t i) const {
+    S const* const x = state.at(Column{}) + 3 * i;
+    return {x[0], x[1], x[2]};
+  }
+};
+
+/// Kernel functor of `for_each` over particles: the first half kick of clumps, and their way.
+template <class S, class Effects>
+struct move_clumps {
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+  S dt;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (state.at(in_clump{})[i] != i) return;
+    moving_clump<S, Effects> clump(state, i);
+    clump.kick(effects, S(Effects::integrator::kick_before) * dt);
+    clump.move(dt);
+    clump.store(true);
+  }
+};
+
+/// Kernel functor of `for_each` over particles: the second half kick of clumps.
+template <class S, class Effects>
+struct end_clumps {
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+  typename Effects::space_type space;
+  S dt;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (state.at(in_clump{})[i] != i) return;
+    moving_clump<S, Effects> clump(state, i);
+    clump.kick(effects, S(Effects::integrator::kick_after) * dt);
+    if constexpr (Effects::repeats) clump.own[clump_centre{}] = space.inside(clump.own[clump_centre{}]);
+    clump.store(false);
+  }
+};
+
+/// Kernel functor of `for_each` over particles: puts the spheres of clumps where their columns say that these are; they
+/// are of the material of the first.
+template <class S, class Effects>
+struct place_clumps {
+  particle_state<S, typename Effects::all> state;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (state.at(in_clump{})[i] != i) return;
+    moving_clump<S, Effects> const clump(state, i);
+    clump.store(true);
+    if constexpr (contains<typename Effects::all, material>)
+      clump.for_each_sphere([&](std::size_t k) { state.at(material{})[k] = state.at(material{})[i]; });
+  }
+};
+
+/// Says which effect of a scene with clumps would act on a sphere of one as if that were free.
+template <class Space, class S, class Effects, class E>
+constexpr bool check_beside_clumps() {
+  using motion = columns<position, velocity, angular_velocity>;
+  using written = typename writes_of<E>::type;
+  using named = union_of<written, typename reads_of<E>::type>;
+  constexpr bool is_known = std::is_same<E, clumps>::value || std::is_same<E, periodic_box>::value;
+  constexpr bool moves =
+      intersection_of<motion, written>::size != 0 &&
+      (has_end_step<E, S>::value || has_begin_step<E, Space, particle_state<S, typename Effects::all>, S>::value);
+  static_assert(
+      is_known || !(moves || asks_forces<E>),
+      "collide: clumps: an effect that moves particles when a step begins or ends, such as box_walls, or asks "
+      "for forces, such as mass_flow, does not know them");
+  static_assert(!has_is_inactive<E, S>::value && !contains<written, alive>,
+                "collide: clumps: sleep, emit and absorbing_box do not know them yet");
+  static_assert(!has_accelerate<E, S>::value || difference_of<named, motion>::size == 0,
+                "collide: clumps: an effect that accelerates them, as one particle at the centre, knows nothing but "
+                "motion; external_forces are of each sphere");
+  return true;
+}
+template <class Space, class S, class Effects, class... E>
+constexpr bool check_clumps() {
+  if constexpr (Effects::has_clumps) {
+    static_assert(Effects::ends_after_meeting && Effects::keeps_pair_torques,
+                  "collide: clumps need velocity_verlet, and forces between particles: name granular_contact");
+    static_assert(!Effects::any_mesh_contact,
+                  "collide: clumps press on the mesh by the forces of granular_contact: bounce, friction, adhesion and "
+                  "other impulses do not know them");
+    static_assert((check_beside_clumps<Space, S, Effects, E>() && ...));
+  }
+  return true;
+}
+
+}  // namespace collide::detail

@@ -1,0 +1,14 @@
+// expect: collide: clumps: sleep, emit and absorbing_box do not know them yet
+#include <collide/bucket.cuh>
+#include <collide/effects/clumps.hpp>
+#include <collide/effects/granular_contact.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/simulation.cuh>
+
+void run() {
+  using law = collide::granular_contact<collide::hertz>;
+  collide::simulation<collide::detector<collide::bucket>, collide::velocity_verlet, law, collide::sleep,
+                      collide::clumps>
+      scene;
+  scene.step(0.001f);
+}

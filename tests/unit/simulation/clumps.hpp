@@ -1,0 +1,448 @@
+/// Clumps, against closed forms and single spheres; instantiated by test_clumps.cpp and test_clumps_cuda.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <collide/effects/bodies.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/clumps.hpp>
+#include <collide/effects/contact_forces.hpp>
+#include <collide/effects/granular_contact.hpp>
+#include <collide/effects/integrators.hpp>
+#include <collide/effects/reaction.hpp>
+#include <collide/simulation/checkpoint.hpp>
+#include <collide/simulation/energy.hpp>
+#include <collide/simulation/place_clumps.hpp>
+
+#include "simulation/simulation.hpp"
+
+namespace tests {
+
+using collide::clump_shape;
+using collide::clumps;
+using collide::granular_contact;
+using collide::gravity;
+using collide::hertz;
+using collide::linear;
+using collide::mindlin;
+using collide::none;
+using collide::placed_clump;
+using collide::velocity_verlet;
+using vector = collide::vec3<double>;
+
+using ball = collide::sphere<double>;
+
+/// A simulation of clumps and a mesh.
+template <class Space, class S, class... Effect>
+class clumps_in {
+ public:
+  using simulation_type =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, velocity_verlet, Effect..., clumps>;
+
+  explicit clumps_in(Space space, world<S> const& w, Effect... effects)
+      : made(space, velocity_verlet{}, effects..., clumps{}), corners_(space, w.corners) {
+    made.set_mesh(collide::triangle_soup(corners_.data(), corners_.size() / 9));
+  }
+
+  template <class Column>
+  vector read(std::size_t i) const {
+    auto const all = made.template to_host<Column>();
+    return {double(all[3 * i]), double(all[3 * i + 1]), double(all[3 * i + 2])};
+  }
+  vector centre(std::size_t i) const { return read<collide::clump_centre>(i); }
+  vector speed(std::size_t i) const { return read<collide::clump_velocity>(i); }
+  vector turning(std::size_t i) const { return read<collide::angular_velocity>(i); }
+
+  simulation_type made;
+
+ private:
+  placed<S> corners_;
+};
+
+inline clump_shape dumbbell(double apart, double radius) {
+  return collide::shape_of_clump({ball{{0, 0, 0}, radius}, ball{{apart, 0, 0}, radius}});
+}
+/// Spheres of which several overlap, without any symmetry.
+inline clump_shape potato() {
+  return collide::shape_of_clump({ball{{0, 0, 0}, 0.5}, ball{{0.6, 0.2, 0}, 0.4}, ball{{0.3, 0.7, 0.3}, 0.3}});
+}
+
+inline placed_clump clump_at(double x, double y, double z) {
+  placed_clump c;
+  c.at.position[0] = x, c.at.position[1] = y, c.at.position[2] = z;
+  return c;
+}
+
+template <class Law>
+Law law_of(double young, double restitution, double friction, double rolling = 0) {
+  return Law{collide::one_material({young, 0.25, 1000}, {restitution, friction, rolling})};
+}
+
+// ---- the motion of one
+
+/// A free asymmetric top keeps its angular momentum to the bit, its energy to what a step makes of it, and the length
+/// of its quaternion, though its spheres overlap.
+template <class S, class Space>
+void check_free_top(Space const& space, std::size_t steps) {
+  clumps_in<Space, S, granular_contact<hertz, mindlin>, collide::polydisperse> one(
+      space, {}, law_of<granular_contact<hertz, mindlin>>(sizeof(S) == 4 ? 1e4 : 1e7, 0.5, 0.3), {});
+  placed_clump c = clump_at(1, 2, 3);
+  collide::turn_at_random(c.at.rotation, 5);
+  c.moving.angular[0] = 0.3, c.moving.angular[1] = 1, c.moving.angular[2] = 0.2;
+  collide::set_clumps(one.made, {potato()}, {c});
+  double const dt = sizeof(S) == 4 ? 0x1p-8 : 0x1p-12;
+  auto const momentum = one.template read<collide::clump_momentum>(0);
+  auto const energy = [&] { return momentum.dot(one.turning(0)); };
+  double const before = energy();
+  double least = before, most = before;
+  for (int look = 0; look < 100; ++look) {
+    one.made.steps(steps / 100, S(dt));
+    least = std::min(least, energy()), most = std::max(most, energy());
+  }
+  CHECK(one.template read<collide::clump_momentum>(0) == momentum);
+  CHECK(most - least < before * (sizeof(S) == 4 ? 1e-4 : 3e-8));
+  CHECK(most > least);
+  auto const q = one.made.template to_host<collide::clump_rotation>();
+  double squared = 0;
+  for (int k = 0; k < 4; ++k) squared += double(q[std::size_t(k)]) * double(q[std::size_t(k)]);
+  CHECK(squared == doctest::Approx(1).epsilon(sizeof(S) == 4 ? 2e-7 : 5e-16));
+  // the spheres are where they were in the body
+  auto const shape = potato();
+  double const apart = (shape.spheres[0].centre - shape.spheres[2].centre).norm();
+  CHECK((one.template read<position>(0) - one.template read<position>(2)).norm() ==
+        doctest::Approx(apart).epsilon(sizeof(S) == 4 ? 1e-6 : 1e-14));
+}
+
+/// Where a top is after a time goes with the square of the step.
+template <class Space>
+void check_order_of_tops(Space const& space) {
+  clumps_in<Space, double, granular_contact<hertz, mindlin>, collide::polydisperse> one(
+      space, {}, law_of<granular_contact<hertz, mindlin>>(1e5, 0.5, 0.3), {});
+  placed_clump c = clump_at(0, 0, 0);
+  c.moving.angular[0] = 3, c.moving.angular[1] = 5, c.moving.angular[2] = 4;
+  auto const end = [&](double dt) {
+    collide::set_clumps(one.made, {potato()}, {c});
+    one.made.steps(static_cast<std::size_t>(1 / dt), dt);
+    return one.template read<position>(1);
+  };
+  vector const exact = end(0x1p-14);
+  double const coarse = (end(0x1p-9) - exact).norm(), fine = (end(0x1p-10) - exact).norm();
+  CHECK(coarse / fine == doctest::Approx(4).epsilon(0.02));
+}
+
+/// A clump of one sphere has the bits of a sphere; one with a small sphere in the middle of a large one, which touches
+/// nothing, and with that one's mass and moments, goes through all of a clump's arithmetic and comes to the same.
+template <class S, class Space>
+void check_sphere_as_clump(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  auto const by = law_of<law>(1e6, 0.5, 0.3, 0.05);
+  world<S> w;
+  w.radius = S(0.1);
+  add_floor(w, 2, 3);
+  w.particle(0, 0, 0.15, 1, 0.3, -0.5);
+  w.particle(0.2, 0.1, 0.4, 0, 0, -1);
+  collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, velocity_verlet, gravity, law> spheres(
+      space, velocity_verlet{}, gravity{}, by);
+  placed<S> const corners(space, w.corners), centres(space, w.centres), velocities(space, w.velocities);
+  spheres.set_mesh(collide::triangle_soup(corners.data(), corners.size() / 9));
+  spheres.set(collide::spheres_xyz(centres.data(), 2, w.radius), velocities.data());
+  auto const placed_as = [&](clumps_in<Space, S, gravity, law>& to, clump_shape const& shape) {
+    std::vector<placed_clump> all;
+    for (std::size_t i = 0; i < 2; ++i) {
+      placed_clump c;
+      for (std::size_t k = 0; k < 3; ++k) {
+        c.at.position[k] = double(w.centres[3 * i + k]);
+        c.moving.linear[k] = double(w.velocities[3 * i + k]);
+      }
+      all.push_back(c);
+    }
+    collide::set_clumps(to.made, {shape}, all);
+  };
+  clump_shape const one = collide::shape_of_clump({ball{{0, 0, 0}, double(w.radius)}});
+  clumps_in<Space, S, gravity, law> alike(space, w, gravity{}, by);
+  placed_as(alike, one);
+  S const dt = S(2e-4);
+  spheres.steps(3000, dt);
+  alike.made.steps(3000, dt);
+  CHECK(alike.made.template to_host<position>() == spheres.template to_host<position>());
+  CHECK(alike.made.template to_host<velocity>() == spheres.template to_host<velocity>());
+  CHECK(alike.made.template to_host<collide::angular_velocity>() ==
+        spheres.template to_host<collide::angular_velocity>());
+}
+
+/// A ball with a small one in its middle, which touches nothing, and its mass and moments: it goes through all of a
+/// clump's arithmetic, and comes to where the ball comes.
+template <class Space>
+void check_ball_with_core(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  using polydisperse = collide::polydisperse;
+  auto const by = law_of<law>(1e6, 0.5, 0.3, 0.05);
+  world<double> w;
+  add_floor(w, 2, 3);
+  std::vector<placed_clump> all{clump_at(0, 0, 0.15), clump_at(0.2, 0.1, 0.4)};
+  all[0].moving.linear[0] = 1, all[0].moving.linear[2] = -0.5, all[1].moving.linear[2] = -1;
+  all[0].moving.angular[1] = 4, all[1].moving.angular[0] = -7;
+  collide::turn_at_random(all[0].at.rotation, 1);
+  clump_shape const one = collide::shape_of_clump({ball{{0, 0, 0}, 0.1}});
+  clump_shape cored = one;
+  cored.spheres.push_back({{0, 0, 0}, 0.02});
+  clumps_in<Space, double, gravity, law, polydisperse> balls(space, w, gravity{}, by, {}),
+      both(space, w, gravity{}, by, {});
+  collide::set_clumps(balls.made, {one}, all);
+  collide::set_clumps(both.made, {cored}, all);
+  balls.made.steps(3000, 2e-4);
+  both.made.steps(3000, 2e-4);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK((balls.template read<position>(i) - both.template read<position>(2 * i)).norm() < 1e-11);
+    CHECK((balls.template read<velocity>(i) - both.template read<velocity>(2 * i)).norm() < 1e-10);
+    CHECK((balls.turning(i) - both.turning(2 * i)).norm() < 1e-9);
+    CHECK(balls.turning(i).norm() > 1);
+  }
+}
+
+// ---- contact
+
+/// An elastic dumbbell that hits a smooth floor aslant, with one ball: the impulse J = 2 v / (1/M + a^2 / I), for the
+/// arm a of the force.
+template <class Space>
+void check_dumbbell_impact(Space const& space) {
+  using law = granular_contact<hertz>;
+  world<double> w;
+  add_floor(w, 3, 1);
+  clump_shape const shape = dumbbell(0.5, 0.1);
+  double const angle = 0.6, v = 0.5, offset = 0.25;
+  placed_clump c = clump_at(0, 0, 0.101);
+  c.at.rotation[0] = std::cos(angle / 2), c.at.rotation[2] = -std::sin(angle / 2);  // the second ball is above
+  c.moving.linear[2] = -v;
+  clumps_in<Space, double, law> one(space, w, law_of<law>(1e10, 1, 0));
+  collide::set_clumps(one.made, {shape}, {c});
+  CHECK(shape.inertia[1] == doctest::Approx(0.25 * 0.25 + 0.4 * 0.01).epsilon(1e-14));
+  one.made.steps(12000, 1e-6);
+  double const arm = offset * std::cos(angle), i = shape.inertia[1], impulse = 2 * v / (1 + arm * arm / i);
+  CHECK(one.speed(0).z() == doctest::Approx(impulse - v).epsilon(1e-3));
+  CHECK(one.turning(0).y() == doctest::Approx(arm * impulse / i).epsilon(1e-3));
+  CHECK(std::abs(one.turning(0).y()) > 1);
+  CHECK(std::abs(one.turning(0).x()) < 1e-9);
+}
+
+/// A rod that lies across a slope, given by the direction of gravity, rolls down with g sin / (1 + I / (M R^2)), and
+/// slides with g (sin - mu cos) where friction is small.
+template <class Space>
+void check_rod_on_slope(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  world<double> w;
+  add_floor(w, 3, 2);
+  std::vector<ball> spheres;
+  for (int i = 0; i < 5; ++i) spheres.push_back({{0, 0.12 * i, 0}, 0.1});
+  clump_shape const shape = collide::shape_of_clump(spheres);
+  double const along = *std::min_element(shape.inertia, shape.inertia + 3), slope = 0.3;
+  for (double const friction : {0.5, 0.05}) {
+    gravity const g{9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)};
+    clumps_in<Space, double, gravity, law> one(space, w, g, law_of<law>(1e8, 0.3, friction));
+    collide::set_clumps(one.made, {shape}, {clump_at(-1, -0.24, 0.1)});
+    one.made.steps(2000, 1e-4);
+    double const from = one.speed(0).x();
+    one.made.steps(4000, 1e-4);
+    double const rolls = 9.81 * std::sin(slope) / (1 + along / 0.01),
+                 slides = 9.81 * (std::sin(slope) - friction * std::cos(slope));
+    CHECK((one.speed(0).x() - from) / 0.4 == doctest::Approx(std::max(rolls, slides)).epsilon(1e-3));
+    CHECK(std::abs(one.speed(0).y()) < 1e-6);
+    if (friction == 0.5) CHECK(one.turning(0).y() * 0.1 == doctest::Approx(one.speed(0).x()).epsilon(2e-3));
+  }
+}
+
+/// Momentum and angular momentum of clumps that meet each other close.
+template <class Law, class Space>
+void check_momentum_of_clumps(Space const& space) {
+  clumps_in<Space, double, Law> some(space, {}, law_of<Law>(1e6, 0.6, 0.4));
+  std::vector<clump_shape> const shapes{
+      dumbbell(0.3, 0.2),
+      collide::shape_of_clump({ball{{0, 0, 0}, 0.2}, ball{{0.25, 0.1, 0}, 0.2}, ball{{0, 0.3, 0.1}, 0.2}})};
+  std::vector<placed_clump> all;
+  for (int i = 0; i < 27; ++i) {
+    placed_clump c = clump_at(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    for (int k = 0; k < 3; ++k) {
+      c.moving.linear[k] = -c.at.position[k] * (1 + 0.1 * (i % 5));
+      c.moving.angular[k] = std::sin(7 * i + k);
+    }
+    collide::turn_at_random(c.at.rotation, std::uint64_t(i));
+    c.shape = std::size_t(i) % 2;
+    all.push_back(c);
+  }
+  collide::set_clumps(some.made, shapes, all);
+  auto const sums = [&] {
+    vector p(0, 0, 0), l = p;
+    std::size_t i = 0;
+    for (auto const& c : all) {
+      vector const v = some.speed(i) * shapes[c.shape].volume, x = some.centre(i);
+      p += v;
+      l += collide::detail::cross(x, v) + some.template read<collide::clump_momentum>(i) * shapes[c.shape].volume;
+      i += shapes[c.shape].spheres.size();
+    }
+    return std::pair(p, l);
+  };
+  auto const before = sums();
+  auto const start = some.speed(0);
+  some.made.steps(3000, 2e-4);
+  auto const after = sums();
+  CHECK((some.speed(0) - start).norm() > 0.1);
+  CHECK((before.first - after.first).norm() < 1e-12);
+  CHECK((before.second - after.second).norm() < 1e-12);
+}
+
+// ---- beside other features
+
+template <class Simulation>
+auto state_of_clumps(Simulation const& of) {
+  return std::tuple(of.template to_host<position>(), of.template to_host<velocity>(),
+                    of.template to_host<collide::angular_velocity>(), of.template to_host<collide::clump_centre>(),
+                    of.template to_host<collide::clump_momentum>(), of.template to_host<collide::clump_rotation>());
+}
+
+/// A clump of spheres that overlap presses on a body with the weight of its union, and goes with a belt.
+template <class S, class Space>
+void check_weight_of_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  world<S> w;
+  add_floor(w, 4, 2);
+  clump_shape const shape =
+      collide::shape_of_clump({ball{{0, 0, 0}, 0.2}, ball{{0.25, 0, 0}, 0.2}, ball{{0.1, 0.2, 0}, 0.2}});
+  double const weight = 1000 * shape.volume * 9.81, dt = 2e-4;
+  collide::reaction_sums sums(space, 1, weight * 1e-9);
+  clumps_in<Space, S, gravity, law, collide::mesh_forces, collide::reaction, collide::moving_bodies<>> one(
+      space, {}, gravity{}, law_of<law>(1e6, 0.3, 0.5), {1000}, sums.effect(1000), {});
+  placed<S> const corners(space, w.corners);
+  collide::body belt{0, w.corners.size() / 9, {}};
+  belt.motion.belt[1] = 0.5;
+  one.made.set_mesh(collide::triangle_soup(corners.data(), corners.size() / 9), {belt});
+  collide::set_clumps(one.made, {shape}, {clump_at(0, -2, 0.2)});
+  one.made.steps(20000, S(dt));
+  sums.clear(space);
+  one.made.steps(500, S(dt));
+  double pressed = 0;
+  auto const forces = one.made.template to_host<collide::mesh_force>();
+  for (std::size_t i = 2; i < forces.size(); i += 3) pressed += double(forces[i]);
+  double const close = sizeof(S) == 4 ? 1e-3 : 1e-6;
+  CHECK(pressed == doctest::Approx(weight).epsilon(close));
+  CHECK(sums.read(space)[0].linear[2] == doctest::Approx(-weight * 500 * dt).epsilon(close));
+  CHECK(one.speed(0).y() == doctest::Approx(0.5).epsilon(1e-3));
+  CHECK(shape.volume < 3 * collide::detail::sphere_mass(1.0, 0.2) * 0.9);
+}
+
+/// Clumps that meet across the sides of a box that repeats do as they do inside; one that is longer than half a side is
+/// refused.
+template <class Space>
+void check_clumps_in_boxes(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  using scene = clumps_in<Space, double, law, collide::periodic_box>;
+  clump_shape const shape = dumbbell(0.25, 0.2);
+  auto const end_of = [&](double shift) {
+    scene two(space, {}, law_of<law>(1e6, 0.6, 0.4), {{0, 0, 0}, {4, 4, 4}});
+    std::vector<placed_clump> both{clump_at(shift + 0.2, 2, 2), clump_at(shift - 0.8, 2.1, 2.05)};
+    both[0].moving.linear[0] = -1, both[1].moving.angular[2] = 2;
+    collide::turn_at_random(both[0].at.rotation, 3);
+    collide::set_clumps(two.made, {shape}, both);
+    two.made.steps(8000, 2e-4);
+    auto ends = state_of_clumps(two.made);
+    for (std::size_t i = 0; i < 12; i += 3) {
+      double& x = std::get<0>(ends)[i];
+      CHECK((x >= 0 && x < 4));
+      x = std::fmod(x - shift + 6, 4);
+    }
+    return ends;
+  };
+  auto const inside = end_of(2), across = end_of(0);
+  for (std::size_t i = 0; i < 12; ++i) {
+    CHECK(std::get<0>(inside)[i] == doctest::Approx(std::get<0>(across)[i]).epsilon(1e-8));
+    CHECK(std::get<1>(inside)[i] == doctest::Approx(std::get<1>(across)[i]).epsilon(1e-8));
+  }
+  CHECK(std::abs(std::get<1>(inside)[7]) > 0.1);  // they have met
+  scene small(space, {}, law_of<law>(1e6, 0.6, 0.4), {{0, 0, 0}, {1.2, 4, 4}});
+  collide::set_clumps(small.made, {dumbbell(1, 0.1)}, {clump_at(0, 0, 0)});
+  CHECK_THROWS_WITH_AS(small.made.step(1e-4), doctest::Contains("periodic_box"), collide::error);
+}
+
+/// A heap of clumps and balls on a floor, in any space, with a checkpoint in the middle: the same bits.
+template <class S, class Space>
+struct heap_of_clumps {
+  using law = granular_contact<hertz, mindlin>;
+  using scene = clumps_in<Space, S, gravity, law, collide::polydisperse, collide::moving_bodies<>>;
+
+  static world<S> tray() {
+    world<S> w;
+    add_floor(w, 2, 4);
+    return w;
+  }
+  static void place(scene& to) {
+    std::vector<clump_shape> const shapes{dumbbell(0.3, 0.2), potato(),
+                                          collide::shape_of_clump({ball{{0, 0, 0}, 0.25}})};
+    std::vector<placed_clump> all;
+    for (int i = 0; i < 24; ++i) {
+      placed_clump c = clump_at(0.9 * (i % 3 - 1), 0.9 * (i / 3 % 2), 0.6 + 0.9 * (i / 6));
+      c.scale = i % 4 == 1 ? 0.5 : 0.8;
+      c.shape = std::size_t(i) % 3;
+      collide::turn_at_random(c.at.rotation, std::uint64_t(i));
+      all.push_back(c);
+    }
+    collide::set_clumps(to.made, shapes, all);
+  }
+  static scene make(Space const& space) { return scene(space, tray(), gravity{}, law_of<law>(2e5, 0.4, 0.5), {}, {}); }
+};
+/// Elastic, smooth clumps on a floor keep their energy, in which each point of a clump counts once.
+template <class Space>
+void check_energy_of_clumps(Space const& space) {
+  using law = granular_contact<hertz>;
+  world<double> w;
+  add_floor(w, 4, 4);
+  clumps_in<Space, double, gravity, law, collide::polydisperse> some(space, w, gravity{}, law_of<law>(1e6, 1, 0), {});
+  std::vector<placed_clump> all;
+  for (int i = 0; i < 8; ++i) {
+    all.push_back(clump_at(1.7 * (i % 2), 1.7 * (i / 2 % 2), 1.1 + 1.7 * (i / 4)));
+    all.back().shape = std::size_t(i) % 2;
+    all.back().moving.angular[i % 3] = 3;
+    collide::turn_at_random(all.back().at.rotation, std::uint64_t(i));
+  }
+  std::vector<clump_shape> const shapes{potato(), dumbbell(0.3, 0.25)};
+  collide::set_clumps(some.made, shapes, all);
+  auto const before = collide::energy(some.made);
+  double mass = 0, turns = 0;
+  for (auto const& c : all) {
+    auto const& shape = shapes[c.shape];
+    mass += 1000 * shape.volume;
+    turns += shape.volume * *std::min_element(shape.inertia, shape.inertia + 3) * 4500;
+  }
+  CHECK(before.rotational > turns);
+  CHECK(before.elastic == 0);
+  some.made.steps(5000, 1e-4);
+  auto const after = collide::energy(some.made);
+  CHECK(after.total() == doctest::Approx(before.total()).epsilon(1e-4));
+  CHECK(after.kinetic > 0.1 * before.total());
+  CHECK(after.rotational != doctest::Approx(before.rotational).epsilon(0.1));
+  CHECK(before.potential > 9.81 * mass * 1.0);
+  CHECK(before.potential < 9.81 * mass * 3.0);
+}
+
+template <class S, class Space>
+void check_same_clumps(Space const& space) {
+  using on_host = heap_of_clumps<S, collide::host>;
+  using there = heap_of_clumps<S, Space>;
+  auto reference = on_host::make(collide::host(1));
+  auto found = there::make(space), loaded = there::make(space);
+  on_host::place(reference);
+  there::place(found);
+  S const dt = S(4e-4);
+  reference.made.steps(1500, dt);
+  found.made.steps(700, dt);
+  std::stringstream file;
+  collide::save(found.made, file);
+  collide::load(loaded.made, file);
+  found.made.steps(800, dt);
+  loaded.made.steps(800, dt);
+  CHECK(state_of_clumps(found.made) == state_of_clumps(reference.made));
+  CHECK(state_of_clumps(loaded.made) == state_of_clumps(reference.made));
+  CHECK(reference.made.template effect<clumps>().reach == loaded.made.template effect<clumps>().reach);
+}
+
+}  // namespace tests
