@@ -98,16 +98,10 @@ struct material : detail::byte_column {};
 /// Radians per unit of time, around the axis that it points along; see `spin`.
 struct angular_velocity : detail::vector_column {};
 
-<<<<<<< HEAD
-/// 1 if the particle is there, 0 if its place is free; see `emit` and `absorb`. An effect of your own makes a particle
-/// in its `begin_step` by writing 1 at a free place. No contact remembers what was there, and columns that no such
-/// effect writes have their first values again, except for position, velocity and radius.
-=======
 /// 1 if the particle is there, 0 if its place is free, within a step 2 to 4 if it has just been made; see `emit` and
 /// `absorb`. An effect of your own makes a particle in its `begin_step` by writing 1 at a free place. No contact
 /// remembers what was there, and columns that no such effect writes have their first values again, except for position,
 /// velocity and radius.
->>>>>>> main
 struct alive : detail::byte_column {
   template <class S>
   static constexpr std::uint8_t initial = 1;
