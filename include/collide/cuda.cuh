@@ -73,11 +73,15 @@ __global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<Kernel, 
   kernel(here, scratch);
 }
 
+/// Threads of a block of `for_each`, of which none wait for each other: few, so that little work is on all processors,
+/// and threads with many registers fill them.
+inline constexpr int threads_of_for_each = 64;
+
 template <class F>
-__global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<F, void>)) run_for_each(std::size_t n, F f) {
+__global__ void __launch_bounds__(threads_of_for_each, (min_blocks_per_sm<F, void>)) run_for_each(std::size_t n, F f) {
   pdl_wait();  // first: blocks of the next kernel would take the room of those that it waits for
   pdl_launch_dependents();
-  std::size_t const i = std::size_t{blockIdx.x} * threads_per_block + threadIdx.x;
+  std::size_t const i = std::size_t{blockIdx.x} * threads_of_for_each + threadIdx.x;
   if (i < n) f(i);
 }
 
@@ -142,7 +146,8 @@ class cuda_space {
   template <class F>
   void for_each(std::size_t n, F const& f) const {
     if (n == 0) return;
-    launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n), n, f);
+    launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n, threads_of_for_each), threads_of_for_each, n,
+                  f);
   }
 
   /// Puts work on the stream that sets `bytes` bytes. A little is filled by a kernel: in a graph, between kernels, that
@@ -223,22 +228,22 @@ class cuda_space {
 
   /// Launches a kernel that begins with `pdl_wait`.
   template <class... Parameters>
-  void launch_kernel(char const* call, void (*kernel)(Parameters...), unsigned blocks,
+  void launch_kernel(char const* call, void (*kernel)(Parameters...), unsigned blocks, int threads,
                      Parameters const&... arguments) const {
     cudaLaunchAttribute early{};
     early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     early.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
     config.gridDim = dim3(blocks);
-    config.blockDim = dim3(threads_per_block);
+    config.blockDim = dim3(static_cast<unsigned>(threads));
     config.stream = stream_;
     config.attrs = &early;
     config.numAttrs = has_pdl_ ? 1 : 0;
     cuda_check(cudaLaunchKernelEx(&config, kernel, arguments...), call);
   }
 
-  static unsigned grid_of(std::size_t n) {
-    std::size_t const blocks = (n + threads_per_block - 1) / threads_per_block;
+  static unsigned grid_of(std::size_t n, int threads) {
+    std::size_t const each = static_cast<std::size_t>(threads), blocks = (n + each - 1) / each;
     if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
       throw error("collide: too much work for one CUDA launch");
     }
@@ -269,7 +274,8 @@ class cuda : public detail::cuda_space {
   template <class Kernel>
   void launch(std::size_t blocks, Kernel const& kernel) const {
     if (blocks == 0) return;
-    launch_kernel("launch of run_threads", detail::run_threads<block<Kernel>, Kernel>, grid_of(blocks), blocks, kernel);
+    launch_kernel("launch of run_threads", detail::run_threads<block<Kernel>, Kernel>,
+                  grid_of(blocks, detail::threads_per_block), detail::threads_per_block, blocks, kernel);
   }
 
   /// How many blocks keep the device busy.
@@ -310,7 +316,7 @@ class cuda_shared : public detail::cuda_space {
       throw error("collide: too much work for one CUDA launch");
     }
     launch_kernel("launch of run_blocks", detail::run_blocks<block<Kernel>, Kernel>, static_cast<unsigned>(blocks),
-                  kernel);
+                  detail::threads_per_block, kernel);
   }
 
   /// How many blocks keep the device busy.

@@ -458,8 +458,10 @@ class simulation {
       clear_overlap_pool();
       space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
                                        state_, effects_, triangles, memory, pressing, what});
-      space_.for_each(state_.size, detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
-                                       state_, effects_, triangles, memory, pressing, overlap_pool(), dt, what});
+      std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
+      space_.for_each(detail::max(state_.size, threads),
+                      detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
+                          state_, effects_, triangles, memory, pressing, overlap_pool(), dt, what, threads});
     }
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.

@@ -301,8 +301,9 @@ struct mesh_contacts_of {
     of.clear_overlap_pool();
     of.space_.for_each(
         found.size(),
-        kernel{
-            {of.state_, of.effects_, triangles, memory, {}, of.overlap_pool(), S(0), meeting::of_all}, f, sums.data()});
+        kernel{{of.state_, of.effects_, triangles, memory, {}, of.overlap_pool(), S(0), meeting::of_all, 0},
+               f,
+               sums.data()});
     of.space_.copy_to_host(found.data(), sums.data(), found.size());
     return found;
   }

@@ -52,7 +52,7 @@ class hit<detail::in_frames<NarrowPhase>, S> {
   /// First time of contact of a sphere that moves, and the contact at that time, computed by this call in the frame of
   /// the body.
   COLLIDE_HD collide::impact<S> impact() const {
-    static_assert(detail::has_impact<NarrowPhase, S>::value,
+    static_assert(detail::has_impact<NarrowPhase, S>,
                   "collide: impacts need a narrow phase for spheres that move, such as karabassi_swept");
     int const frame = mesh_.frame_of(triangle);
     collide::impact<S> i = NarrowPhase::impact_of(mesh_[triangle], mesh_.seen_from(frame, spheres_[sphere], 1));

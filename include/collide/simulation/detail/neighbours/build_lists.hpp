@@ -79,7 +79,7 @@ struct clear_cells {
     order.ends[i] = 0;
     if (i == 0) {
       auto& h = *order.header;
-      h.overflowed = h.count = h.in_runs = h.kept = 0;
+      h.count = h.in_runs = h.kept = 0;
       if constexpr (sorted_particles<S, Effects>::on_ranks) h.at_border = 0;
     }
   }
@@ -197,12 +197,12 @@ struct build_lists {
     }
   }
 
-  /// Keeps whether any on a particle's list is another rank's.
+  /// Keeps whether any on a particle's list is another rank's; of those that have a run it is not asked.
   COLLIDE_HD_INLINE void mark_border([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t const* places,
                                      [[maybe_unused]] std::uint32_t size) const {
     if constexpr (ordered::on_ranks) {
-      bool meets = false;
-      for (std::uint32_t n = 0; n < size; ++n) meets = meets || order.is_of_another(order.numbers[places[n]]);
+      bool meets = size > capacity;
+      for (std::uint32_t n = 0; n < size && !meets; ++n) meets = order.is_of_another(order.numbers[places[n]]);
       meets = meets && !order.is_of_another(order.numbers[i]);
       order.is_at_border[i] = meets ? 1 : 0;
       if (!meets) return;
@@ -213,8 +213,8 @@ struct build_lists {
 
   /// A list of any length, as a run of its own.
   COLLIDE_HD void list_run(std::uint32_t i, std::uint32_t found) const {
+    mark_border(i, nullptr, found);
     order.list(0, i) = order.overflow_mark;
-    store_relaxed(&order.header->overflowed, 1u);
     std::uint32_t const first = fetch_add(&order.header->in_runs, found);
     order.list(2, i) = first;
     if (first + std::size_t{found} > order.run_capacity) {

@@ -134,35 +134,38 @@ struct pair_interaction {
   }
 };
 
-/// Kernel functor of `for_each` over places in the order: a particle meets those on its list that overlap it.
+/// Kernel functor of `for_each` over places in the order: a particle meets those on its list, or in its run, that
+/// overlap it. Where there was no room for a run, all that overlap it are looked for, as many as can be held at a time,
+/// by rising numbers.
 template <class S, class Effects>
 struct interact_listed : pair_interaction<S, Effects> {
+  /// Waits for memory, mostly: 128 registers a thread.
+  template <class>
+  static constexpr int min_blocks_per_sm = 8;
+
   COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
-    auto const& places = this->order;
-    if (i == 0) places.header->rebuild = 0;  // not read again in this step
-    if (i < places.header->count && !this->is_left_out(i)) meet_listed(i);
+    if (i == 0) this->order.header->rebuild = 0;  // not read again in this step
+    if (i < this->order.header->count && !this->is_left_out(i)) meet_listed(static_cast<std::uint32_t>(i));
   }
 
  protected:
-  COLLIDE_HD_INLINE void meet_listed(std::size_t i) const {
+  using ordered = sorted_particles<S, Effects>;
+  using pair_state = typename pair_interaction<S, Effects>::pair_state;
+
+  COLLIDE_HD_INLINE void meet_listed(std::uint32_t self) const {
     auto const& places = this->order;
-    auto const self = static_cast<std::uint32_t>(i);
-    if (places.list(0, i) == places.overflow_mark) return;
-    typename pair_interaction<S, Effects>::pair_state p(places.load(i));
-    packed_sphere<S> const own = places.spheres[i];
-    if constexpr (sorted_particles<S, Effects>::has_memory) fetch_records(i);
+    bool const is_listed = places.list(0, self) != places.overflow_mark;
+    pair_state p(places.load(self));
+    if constexpr (ordered::has_memory) {
+      if (is_listed) fetch_records(self);
+    }
     do {
-      if constexpr (sorted_particles<S, Effects>::has_memory) {
-        std::uint32_t const before = places.memory.touching[i];
-        std::uint32_t touching = 0;
-        for_each_near(self, own, before, [&](std::uint32_t place, bool overlap, std::uint32_t k) {
-          bool const was = (before >> k & 1) != 0;
-          auto& record = places.memory.records[k * places.capacity + i];
-          if (this->interact(p, place, overlap, was, record)) touching |= 1u << k;
-        });
-        if ((touching | before) != 0) places.memory.touching[i] = touching;
+      if (is_listed) {
+        go_through_list(self, p);
+      } else if (places.list(1, self) != places.overflow_mark) {
+        go_through_run(self, p);
       } else {
-        for_each_near(self, own, 0, [&](std::uint32_t place, bool, std::uint32_t) { this->interact(p, place); });
+        search(self, p);
       }
     } while (this->must_meet_again(p));
     this->store(p);
@@ -179,103 +182,40 @@ struct interact_listed : pair_interaction<S, Effects> {
 #endif
   }
 
-  /// f(place, overlap, item) for each on the list of a particle that overlaps it, or whose item is among the bits of
-  /// `before`.
-  template <class F>
-  COLLIDE_HD_INLINE void for_each_near(std::uint32_t self, packed_sphere<S> const& own, std::uint32_t before,
-                                       F const& f) const {
+  COLLIDE_HD_INLINE void go_through_list(std::uint32_t self, pair_state& p) const {
     auto const& places = this->order;
-#if defined(__CUDA_ARCH__)
-    // while one is looked at, the next and the list's item behind it are loaded
-    auto const item = [&](std::uint32_t last, std::uint32_t n) {
-      return last != self && n < sorted_particles<S, Effects>::listed ? places.list(n, self) : self;
-    };
-    std::uint32_t next = places.list(0, self), behind = item(next, 1);
-    packed_sphere<S> next_sphere = places.spheres[next];
-    COLLIDE_NO_UNROLL
-    for (std::uint32_t n = 2; next != self; ++n) {
-      std::uint32_t const place = next;
-      packed_sphere<S> const sphere = next_sphere;
-      next = behind;
-      next_sphere = places.spheres[next];
-      behind = item(next, n);
-      bool const overlap = places.within_skin(own, sphere, S(0));
-      if (overlap || (before >> (n - 2) & 1) != 0) f(place, overlap, n - 2);
+    if constexpr (ordered::has_memory) {
+      std::uint32_t const before = places.memory.touching[self];
+      std::uint32_t touching = 0;
+      for_each_listed(self, before, [&](std::uint32_t place, bool overlap, std::uint32_t k) {
+        auto& record = places.memory.records[k * places.capacity + self];
+        if (this->interact(p, place, overlap, (before >> k & 1) != 0, record)) touching |= 1u << k;
+      });
+      if ((touching | before) != 0) places.memory.touching[self] = touching;
+    } else {
+      for_each_listed(self, 0, [&](std::uint32_t place, bool, std::uint32_t) { this->interact(p, place); });
     }
-#else
-    // first all are looked at, without a branch that a processor would have to guess
-    std::uint32_t found = 0;
-    for (std::uint32_t k = 0; k < sorted_particles<S, Effects>::listed && places.list(k, self) != self; ++k)
-      found |= std::uint32_t{places.within_skin(own, places.spheres[places.list(k, self)], S(0))} << k;
-    for (std::uint32_t left = found | before; left != 0; left &= left - 1) {
-      auto const k = static_cast<std::uint32_t>(__builtin_ctz(left));
-      f(places.list(k, self), (found >> k & 1) != 0, k);
-    }
-#endif
   }
-};
-
-/// Kernel functor of `for_each` over places in the order: the same for particles that meet none of other ranks.
-template <class S, class Effects>
-struct interact_inside : interact_listed<S, Effects> {
-  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
-    auto const& places = this->order;
-    if (i >= places.header->count || places.is_at_border[i] != 0 || this->is_left_out(i)) return;
-    this->meet_listed(i);
-  }
-};
-/// Kernel functor of `for_each` over the others.
-template <class S, class Effects>
-struct interact_at_border : interact_listed<S, Effects> {
-  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const { this->meet_listed(this->order.border[k]); }
-};
-
-/// Kernel functor of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have
-/// room for meet those of their run. Where there was no room for that, all that overlap them are looked for, as many as
-/// can be held at a time, by rising numbers.
-template <class S, class Effects>
-struct interact_overflowed : pair_interaction<S, Effects> {
-  using ordered = sorted_particles<S, Effects>;
-
-  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
-    auto const& places = this->order;
-    if (i >= places.header->count || places.list(0, i) != places.overflow_mark) return;
-    if (this->is_left_out(i)) return;
-    auto const self = static_cast<std::uint32_t>(i);
-    typename pair_interaction<S, Effects>::pair_state p(places.load(i));
-    do {
-      if (places.list(1, i) == places.overflow_mark) {
-        search(self, p);
-      } else {
-        go_through_run(self, p);
-      }
-    } while (this->must_meet_again(p));
-    this->store(p);
-  }
-
- private:
-  using pair_state = typename pair_interaction<S, Effects>::pair_state;
 
   COLLIDE_HD_INLINE void go_through_run(std::uint32_t self, pair_state& p) const {
     auto const& places = this->order;
     std::uint32_t const first = places.list(1, self), size = places.list(2, self);
-    packed_sphere<S> const own = places.spheres[self];
-    COLLIDE_NO_UNROLL
-    for (std::uint32_t k = 0; k < size; ++k) {
-      std::uint32_t const place = places.runs[first + k];
-      bool const overlap = places.within_skin(own, places.spheres[place], S(0));
-      if constexpr (ordered::has_memory) {
-        std::uint8_t& touching = places.memory.run_touching[first + k];
-        if (!overlap && touching == 0) continue;
+    auto const place_of = [&](std::uint32_t k) { return k < size ? places.runs[first + k] : self; };
+    if constexpr (ordered::has_memory) {
+      std::uint8_t* const touching = places.memory.run_touching + first;
+      auto const was = [&](std::uint32_t k) { return touching[k] != 0; };
+      for_each_near(self, place_of, was, [&](std::uint32_t place, bool overlap, std::uint32_t k) {
         auto& record = places.memory.records[places.run_item(first + k)];
-        touching = this->interact(p, place, overlap, touching != 0, record);
-      } else {
-        if (overlap) this->interact(p, place);
-      }
+        touching[k] = this->interact(p, place, overlap, was(k), record);
+      });
+    } else {
+      for_each_near(
+          self, place_of, [](std::uint32_t) { return false; },
+          [&](std::uint32_t place, bool, std::uint32_t) { this->interact(p, place); });
     }
   }
 
-  COLLIDE_HD_INLINE void search(std::uint32_t self, pair_state& p) const {
+  COLLIDE_HD void search(std::uint32_t self, pair_state& p) const {
     auto const& places = this->order;
     if constexpr (ordered::has_memory) store_relaxed(&places.header->forgotten, 1u);
     id last = 0;
@@ -298,6 +238,63 @@ struct interact_overflowed : pair_interaction<S, Effects> {
       if (!complete) last = near.numbers[near.size - 1];
     }
   }
+
+  /// f(place, overlap, k) for the places place_of(k), from k = 0 until that is `self`, of those that overlap it, or for
+  /// which was(k).
+  template <class PlaceOf, class Was, class F>
+  COLLIDE_HD_INLINE void for_each_near(std::uint32_t self, PlaceOf const& place_of, Was const& was, F const& f) const {
+    auto const& places = this->order;
+    packed_sphere<S> const own = places.spheres[self];
+    // while one is looked at, the next and the place behind it are loaded
+    std::uint32_t next = place_of(0), behind = next != self ? place_of(1) : self;
+    packed_sphere<S> next_sphere = places.spheres[next];
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; next != self; ++k) {
+      std::uint32_t const place = next;
+      packed_sphere<S> const sphere = next_sphere;
+      next = behind;
+      next_sphere = places.spheres[next];
+      behind = next != self ? place_of(k + 2) : self;
+      bool const overlap = places.within_skin(own, sphere, S(0));
+      if (overlap || was(k)) f(place, overlap, k);
+    }
+  }
+
+  /// The same for the list of a particle, of which bit k of `before` says was(k).
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, std::uint32_t before, F const& f) const {
+    auto const& places = this->order;
+#if defined(__CUDA_ARCH__)
+    for_each_near(
+        self, [&](std::uint32_t k) { return k < ordered::listed ? places.list(k, self) : self; },
+        [&](std::uint32_t k) { return (before >> k & 1) != 0; }, f);
+#else
+    // first all are looked at, without a branch that a processor would have to guess
+    packed_sphere<S> const own = places.spheres[self];
+    std::uint32_t found = 0;
+    for (std::uint32_t k = 0; k < ordered::listed && places.list(k, self) != self; ++k)
+      found |= std::uint32_t{places.within_skin(own, places.spheres[places.list(k, self)], S(0))} << k;
+    for (std::uint32_t left = found | before; left != 0; left &= left - 1) {
+      auto const k = static_cast<std::uint32_t>(__builtin_ctz(left));
+      f(places.list(k, self), (found >> k & 1) != 0, k);
+    }
+#endif
+  }
+};
+
+/// Kernel functor of `for_each` over places in the order: the same for particles that meet none of other ranks.
+template <class S, class Effects>
+struct interact_inside : interact_listed<S, Effects> {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& places = this->order;
+    if (i >= places.header->count || places.is_at_border[i] != 0 || this->is_left_out(i)) return;
+    this->meet_listed(static_cast<std::uint32_t>(i));
+  }
+};
+/// Kernel functor of `for_each` over the others.
+template <class S, class Effects>
+struct interact_at_border : interact_listed<S, Effects> {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const { this->meet_listed(this->order.border[k]); }
 };
 
 }  // namespace collide::detail

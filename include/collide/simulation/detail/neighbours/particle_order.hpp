@@ -59,12 +59,11 @@ struct small_cells {
 
 /// State of the lists of all particles.
 struct list_state {
-  std::uint32_t rebuild;     ///< not 0: the lists are to be made anew
-  std::uint32_t overflowed;  ///< not 0: some particles have more neighbours than lists have room for
-  std::uint32_t count;       ///< how many particles are in the order
-  std::uint32_t in_runs;     ///< how many neighbours are in runs, or would be if there were room
-  std::uint32_t kept;        ///< how many contacts are kept while lists are made anew
-  std::uint32_t forgotten;   ///< not 0: there was no room for what some contact remembers
+  std::uint32_t rebuild;    ///< not 0: the lists are to be made anew
+  std::uint32_t count;      ///< how many particles are in the order
+  std::uint32_t in_runs;    ///< how many neighbours are in runs, or would be if there were room
+  std::uint32_t kept;       ///< how many contacts are kept while lists are made anew
+  std::uint32_t forgotten;  ///< not 0: there was no room for what some contact remembers
 };
 
 /// State of the lists on ranks.
@@ -113,7 +112,7 @@ struct sorted_particles {
 
   std::size_t own;                  ///< on ranks: copies of other ranks' particles have the numbers from here on
   std::uint32_t* places_of_copies;  ///< by those numbers
-  std::uint8_t* is_at_border;       ///< by places: not 0 if one on the list is such a copy
+  std::uint8_t* is_at_border;       ///< by places: not 0 if one on the list is such a copy, or there is no list
   std::uint32_t* border;            ///< those places, as many as there is room for
   std::size_t border_capacity;
   id const* clumps;  ///< by numbers: `in_clump`; null if the scene has none

@@ -227,7 +227,6 @@ class verlet_list {
   void interact(Space& space, state_type const& state, Scene const& effects, S dt, meeting what) {
     order const o = order_of(state);
     std::size_t const n = state.size;
-    std::uint32_t const* const overflowed = &o.header->overflowed;
     if constexpr (Once) {
       pairs_.interact(space, meet_once<S, Scene>{o, pairs_.items(), effects, dt, what},
                       sum_actions<S, Scene>{{state, o, Effects(effects), dt, what}, pairs_.items()});
@@ -242,8 +241,6 @@ class verlet_list {
     } else {
       space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, what}});
     }
-    if constexpr (!Once)
-      for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, what}});
   }
 
  private:

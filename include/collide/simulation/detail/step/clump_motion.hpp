@@ -137,7 +137,7 @@ constexpr bool check_beside_clumps() {
   constexpr bool is_known = std::is_same<E, clumps>::value || std::is_same<E, periodic_box>::value;
   constexpr bool moves =
       intersection_of<motion, written>::size != 0 &&
-      (has_end_step<E, S>::value || has_begin_step<E, Space, particle_state<S, typename Effects::all>, S>::value);
+      (has_end_step<E, S>::value || has_begin_step<E, Space, particle_state<S, typename Effects::all>, S>);
   static_assert(
       is_known || !(moves || asks_forces<E>),
       "collide: clumps: an effect that moves particles when a step begins or ends, such as box_walls, or asks "

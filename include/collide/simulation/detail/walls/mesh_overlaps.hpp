@@ -55,13 +55,60 @@ struct wake_by_bodies {
   }
 };
 
+/// A sphere in the frame of a body at the end of the step; 0 is that of what rests.
+template <class Triangles, class S>
+COLLIDE_HD_INLINE sphere<S> seen_from([[maybe_unused]] Triangles const& open, [[maybe_unused]] int frame,
+                                      sphere<S> const& s) {
+  if constexpr (has_moving_mesh<Triangles>) {
+    return open.mesh.seen_from(frame, s, 1);
+  } else {
+    return s;
+  }
+}
+
+/// f(triangle, frame) for each triangle whose box a sphere meets, until that is true; then returns true.
+template <class Triangles, class S, class F>
+COLLIDE_HD_INLINE bool meets_box(Triangles const& open, sphere<S> const& shape, F const& f) {
+  constexpr std::uint32_t together = 4, all = 1u << 30;
+  auto cursor = open.begin(shape);
+  candidate_range range{};
+  auto const next = [&] {
+    if constexpr (has_moving_mesh<Triangles>) {
+      return open.next(shape, 1, cursor, all, range);
+    } else {
+      return open.next(shape, cursor, all, range);
+    }
+  };
+  while (next()) {
+    int frame = 0;
+    if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
+    sphere<S> const seen = seen_from(open, frame, shape);
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; k < range.count; k += together) {
+      id triangles[together];
+      bool overlaps[together];
+      for (std::uint32_t j = 0; j < together; ++j) {  // all are on their way at once
+        cell_item const e = range.at(min(k + j, range.count - 1));
+        triangles[j] = e.triangle;
+        overlaps[j] = k + j < range.count && range.passes_coverage(e) &&
+                      triangle_aabb_of(open.mesh[e.triangle]).overlaps(seen.centre, seen.radius);
+      }
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t j = 0; j < together; ++j)
+        if (overlaps[j] && f(triangles[j], frame)) return true;
+    }
+  }
+  return false;
+}
+
 /// Which particles may press on the mesh, in any order.
 struct pressing_list {
   std::uint32_t* count;
   id* numbers;
 };
 
-/// Kernel functor of `for_each` over particles: lists those that may press on the mesh. These are few, and much work.
+/// Kernel functor of `for_each` over particles: lists those that meet the box of a triangle. These are few, and much
+/// work.
 template <class S, class Effects, class Triangles, class Memory>
 struct list_pressing {
   particle_state<S, typename Effects::all> state;
@@ -82,11 +129,17 @@ struct list_pressing {
     particle<S, union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>> p;
     state.load(p, i);
     sphere<S> const shape{p[position{}], reach_of<Effects>(p.the_radius)};
-    if (is_finite(shape.centre) && !triangles.opened().empty(shape)) {
+    if (is_finite(shape.centre) && may_press(shape)) {
       found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
     } else if constexpr (Effects::remembered::size != 0) {
       if (what == meeting::in_step && memory.counts[i] != 0) memory.counts[i] = 0;
     }
+  }
+
+ private:
+  COLLIDE_HD_INLINE bool may_press(sphere<S> const& shape) const {
+    Triangles const open = triangles.opened();
+    return !open.empty(shape) && meets_box(open, shape, [](id, int) { return true; });
   }
 };
 
@@ -109,7 +162,9 @@ inline overlap_item* overlap_items_of_thread(std::size_t n) {
 }
 #endif
 
-/// Kernel functor of `for_each` over as many as there are particles: those on the list press on the mesh.
+/// Kernel functor of `for_each` over at least as many as there are particles: those on the list press on the mesh.
+/// Where these are so few that they do not fill a device of `threads`, they are apart: threads that run together wait
+/// for each other.
 template <class S, class Effects, class Triangles, class Memory>
 struct press_on_mesh {
   using effects_type = Effects;
@@ -125,9 +180,13 @@ struct press_on_mesh {
   overlap_pool pool;
   S dt;
   meeting what;
+  std::size_t threads;
 
   COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const {
-    if (k < *pressing.count) press_with(pressing.numbers[k]);
+    std::size_t const count = *pressing.count;
+    std::size_t apart = 1;
+    while (apart < 32 && 2 * apart * count <= threads) apart *= 2;
+    if (k % apart == 0 && k / apart < count) press_with(pressing.numbers[k / apart]);
   }
 
  protected:
@@ -181,42 +240,43 @@ struct press_on_mesh {
 #endif
   }
 
+  /// Triangles whose boxes a sphere meets are kept until there are some: so threads that run together find some each,
+  /// and then ask for the nearest points together.
   COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
-    auto cursor = open.begin(shape);
-    candidate_range range{};
-    while (next(open, shape, cursor, range)) {
-      int frame = 0;
-      if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
-      sphere<S> const seen = seen_from(open, frame, shape);
-      COLLIDE_NO_UNROLL
-      for (std::uint32_t k = 0; k < range.count; k += together) {
-        id triangles_near[together];
-        bool overlaps[together];
-        for (std::uint32_t j = 0; j < together; ++j) {  // all are on their way at once
-          cell_item const e = range.at(min(k + j, range.count - 1));
-          triangles_near[j] = e.triangle;
-          overlaps[j] = k + j < range.count && range.passes_coverage(e) &&
-                        triangle_aabb_of(open.mesh[e.triangle]).overlaps(seen.centre, seen.radius);
-        }
-        COLLIDE_NO_UNROLL
-        for (std::uint32_t j = 0; j < together; ++j)
-          if (overlaps[j]) add(open, triangles_near[j], frame, seen, near);
-      }
-    }
+    boxes_met met;
+    meets_box(open, shape, [&](id triangle, int frame) {
+      if (met.size == met.capacity) add(open, shape, met, near);
+      met.triangles[met.size] = triangle;
+      met.frames[met.size++] = static_cast<std::uint8_t>(frame);
+      return false;
+    });
+    add(open, shape, met, near);
   }
-  static constexpr std::uint32_t together = 4;
 
-  COLLIDE_HD_INLINE void add(Triangles const& open, id triangle, int frame, sphere<S> const& seen,
-                             overlap_list& near) const {
-    if constexpr (has_moving_mesh<Triangles>) {
-      if (open.mesh.frame_of(triangle) != frame) return;
+  struct boxes_met {
+    static constexpr std::uint32_t capacity = 16;
+    std::uint32_t size = 0;
+    id triangles[capacity];
+    std::uint8_t frames[capacity];
+  };
+
+  COLLIDE_HD_INLINE void add(Triangles const& open, sphere<S> const& shape, boxes_met& met, overlap_list& near) const {
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; k < met.size; ++k) {
+      id const triangle = met.triangles[k];
+      int const frame = met.frames[k];
+      if constexpr (has_moving_mesh<Triangles>) {
+        if (open.mesh.frame_of(triangle) != frame) continue;
+      }
+      sphere<S> const seen = seen_from(open, frame, shape);
+      // of triangles that are near in their boxes only, such as thin ones that meet in a point, there may be very many
+      if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) continue;
+      nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
+      if (!(n.distance < static_cast<double>(seen.radius))) continue;
+      vec3<double> const nearest = in_world(open, frame, scaled(n.normal, -n.distance));
+      near.add({nearest, n.distance, triangle, static_cast<std::uint8_t>(frame), n.kind, false, false, 0, 0, 0, 0, 0});
     }
-    // of triangles that are near in their boxes only, such as thin ones that meet in a point, there may be very many
-    if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) return;
-    nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
-    if (!(n.distance < static_cast<double>(seen.radius))) return;
-    vec3<double> const nearest = in_world(open, frame, scaled(n.normal, -n.distance));
-    near.add({nearest, n.distance, triangle, static_cast<std::uint8_t>(frame), n.kind, false, false, 0, 0, 0, 0, 0});
+    met.size = 0;
   }
 
   /// A triangle relative to the centre of a sphere, along the axes of the world.
@@ -385,24 +445,6 @@ struct press_on_mesh {
     }
     (void)open, (void)frame;
     return x;
-  }
-  static COLLIDE_HD_INLINE sphere<S> seen_from(Triangles const& open, int frame, sphere<S> const& s) {
-    if constexpr (has_moving_mesh<Triangles>) {
-      return open.mesh.seen_from(frame, s, 1);
-    } else {
-      (void)open, (void)frame;
-      return s;
-    }
-  }
-  template <class Cursor>
-  static COLLIDE_HD_INLINE bool next(Triangles const& open, sphere<S> const& s, Cursor& cursor,
-                                     candidate_range& range) {
-    constexpr std::uint32_t all = 1u << 30;
-    if constexpr (has_moving_mesh<Triangles>) {
-      return open.next(s, 1, cursor, all, range);
-    } else {
-      return open.next(s, cursor, all, range);
-    }
   }
 };
 
