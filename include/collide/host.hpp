@@ -92,7 +92,7 @@ class host {
   /// Calls f(i) for all i < n, from all threads; returns when all are done, and throws what f has thrown.
   template <class F>
   void for_each(std::size_t n, F const& f) const {
-    run((n + 1023) / 1024, [&](std::size_t first, std::size_t last) {
+    run((n + 1023) / 1024, [&](std::size_t first, std::size_t last) COLLIDE_AS_O3 {
       for (std::size_t i = first * 1024; i < std::min(n, last * 1024); ++i) f(i);
     });
   }

@@ -64,12 +64,15 @@
 #define COLLIDE_HOT
 #endif
 
-#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
-/// Before a loop over axes or corners: g++ unrolls it with -O2 as with -O3; other compilers do so by themselves.
-#define COLLIDE_UNROLL _Pragma("GCC unroll 16")
-#else
-/// Before a loop over axes or corners.
+#if defined(__CUDACC__) || !defined(__GNUC__)
+/// Before a loop over a few items.
 #define COLLIDE_UNROLL
+#elif defined(__clang__)
+/// Before a loop over a few items: the host's compiler unrolls it with -O2 as with -O3.
+#define COLLIDE_UNROLL _Pragma("unroll")
+#else
+/// Before a loop over a few items: the host's compiler unrolls it with -O2 as with -O3.
+#define COLLIDE_UNROLL _Pragma("GCC unroll 16")
 #endif
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__) && defined(__OPTIMIZE__) && \

@@ -89,8 +89,11 @@ TEST_CASE("once a pair: laws have the bits that they have where each particle as
   other.test = slip_test::spring_and_dashpot;
   other.keeps_length = other.turns_about_normal = true;
   check_once_a_pair<double>(granular_contact<hertz, mindlin, epsd, none, materials<2>>{two_solids(), {}, other});
-  check_once_a_pair<float>(granular_contact<hertz, mindlin_rescale, constant_torque, dmt>{soft});
-  check_once_a_pair<double>(granular_contact<hertz, mindlin_force, epsd2, jkr>{soft});
+  torsion<constant_torque> twisting;
+  twisting.stiffness = 1e-4, twisting.damping = 1e-9, twisting.friction = 1e-5;
+  check_once_a_pair<float>(
+      granular_contact<hertz, mindlin_rescale, torsion<constant_torque>, dmt>{soft, {}, {}, twisting});
+  check_once_a_pair<double>(granular_contact<hertz, mindlin_force, marshall<epsd2>, jkr>{soft});
   check_once_a_pair<float>(granular_contact<linear, cundall_strack, none, sjkr, materials<2>>{two_solids()});
   check_once_a_pair<double>(granular_contact<linear, dashpot>{soft, {}, {0.01}});
   check_once_a_pair<double>(granular_contact<hertz>{soft});

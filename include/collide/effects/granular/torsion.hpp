@@ -25,6 +25,7 @@ struct with_torsion {
   static_assert(!has_twist_angle<remembers_of<Rolling>>,
                 "collide: torsion and marshall contain a law of rolling, and not a second law of torsion");
   using remembers = typename contact_columns_of<union_of<columns<twist_angle>, remembers_of<Rolling>>>::type;
+  static constexpr bool is_mutual = is_mutual_law<Rolling>;          ///< see law.hpp
   static constexpr bool needs_hertz = detail::needs_hertz<Rolling>;  ///< the normal law must be `hertz`
 
  protected:
@@ -34,11 +35,12 @@ struct with_torsion {
                                           S limit) {
     S& angle = memory[twist_angle{}];
     angle += p.twist * memory.elapsed();
-    S const torque = stiffness * angle + dash * p.twist;
-    if (!(torque > limit || torque < -limit)) return p.normal * -torque;
-    S const sliding = torque < 0 ? -limit : limit;
-    if (stiffness > 0) angle = (sliding - dash * p.twist) / stiffness;
-    return p.normal * -sliding;
+    S const damped = dash * p.twist, torque = stiffness * angle + damped;
+    auto const slides = torque > limit || torque < -limit;
+    if (!any(slides)) return p.normal * -torque;
+    S const sliding = either(torque < 0, S(-limit), limit);
+    angle = either(slides && stiffness > 0, S((sliding - damped) / stiffness), angle);
+    return p.normal * -either(slides, sliding, torque);
   }
 };
 

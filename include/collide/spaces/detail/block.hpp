@@ -84,6 +84,7 @@ class serial_block {
 
   template <class T, unsigned N>
   COLLIDE_HD_INLINE void load_striped(T const* from, std::uint32_t row, T (&to)[N]) {
+    COLLIDE_UNROLL
     for (unsigned k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
   }
 
@@ -92,6 +93,7 @@ class serial_block {
 
   template <class Scratch, class T, unsigned N>
   COLLIDE_HD_INLINE void store_transposed(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
+    COLLIDE_UNROLL
     for (unsigned k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
   }
 

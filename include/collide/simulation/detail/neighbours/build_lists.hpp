@@ -25,7 +25,7 @@ struct update_and_check_skin {
 
   using ordered = sorted_particles<S, Effects>;
 
-  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_HD void operator()(std::size_t i) const {
     if (!order.is_of_another(i)) check_births(i);
     if (i >= order.header->count) return;
     id const number = order.numbers[i];

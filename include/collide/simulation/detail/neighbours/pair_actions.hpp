@@ -75,7 +75,7 @@ struct meet_once {
   S dt;
   meeting what;
 
-  void operator()(std::size_t begin, std::size_t end) const {
+  COLLIDE_AS_O3 void operator()(std::size_t begin, std::size_t end) const {
     touching_pair found[capacity];
     std::uint32_t size = 0;
     std::uint32_t const last_item = items.firsts[order.header->count] - 1;
@@ -210,7 +210,7 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
     return alone;
   }
 
-  void operator()(std::size_t i) const {
+  COLLIDE_AS_O3 void operator()(std::size_t i) const {
     auto const& places = this->order;
     fetch_kicks(min(i + 24, std::size_t{places.header->count} - 1), typename Effects::interaction_kicks{});
     std::size_t const soon = min(i + 6, std::size_t{places.header->count} - 1);

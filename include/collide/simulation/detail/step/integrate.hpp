@@ -174,6 +174,7 @@ struct integration {
       for (int k = 0; k < N; ++k) times[k] = inactive[k] ? S(0) : begin_with_kick(context, p[k]) * context.dt;
       context.effects.accelerate_together(p, times);
     }
+    COLLIDE_UNROLL
     for (int k = 0; k < N; ++k) {
       if (inactive[k]) continue;
       if constexpr (!(effects_type::any_resistance && N % 16 == 0)) begin_particle(context, p[k]);

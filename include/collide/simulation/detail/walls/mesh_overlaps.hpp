@@ -242,7 +242,7 @@ struct press_on_mesh {
 
   /// Triangles whose boxes a sphere meets are kept until there are some: so threads that run together find some each,
   /// and then ask for the nearest points together.
-  COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
+  COLLIDE_AS_O3 COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
     boxes_met met;
     meets_box(open, shape, [&](id triangle, int frame) {
       if (met.size == met.capacity) add(open, shape, met, near);
@@ -292,7 +292,8 @@ struct press_on_mesh {
     return t;
   }
 
-  COLLIDE_HD void press(Triangles const& open, std::size_t i, overlap_list const& near, int before) const {
+  COLLIDE_AS_O3 COLLIDE_HD void press(Triangles const& open, std::size_t i, overlap_list const& near,
+                                      int before) const {
     integrated p;
     state.load(p, i);
     integrated const self = p;
