@@ -22,11 +22,7 @@ struct grid_or_tree_ref : bucket_ref<S> {
   per_sphere_ref<S, Tree> tree;  ///< of a mesh without triangles if the cells are asked
 
   COLLIDE_HD_INLINE bool asks_tree() const {
-#if defined(__CUDA_ARCH__)
-    return false;  // `automatic` makes none on a device
-#else
-    return tree.mesh.size() != 0;
-#endif
+    return COLLIDE_ON_DEVICE(false, tree.mesh.size() != 0);  // `automatic` makes none on a device
   }
 
   COLLIDE_HD grid_or_tree_ref opened() const { return {bucket_ref<S>::opened(), tree}; }

@@ -29,23 +29,19 @@
 #endif
 
 #if defined(__CUDA_ARCH__)
-/// Marks a function that is called rarely: small on the host, and inlined on the device, where its loops become
-/// registers.
-#define COLLIDE_HD_RARE COLLIDE_HD_INLINE
+/// The first of two expressions in device code, the second on the host.
+#define COLLIDE_ON_DEVICE(device, host) device
 #else
-/// Marks a function that is called rarely.
-#define COLLIDE_HD_RARE COLLIDE_HD_NOINLINE inline
+/// The first of two expressions in device code, the second on the host.
+#define COLLIDE_ON_DEVICE(device, host) host
 #endif
 
-#if defined(__CUDA_ARCH__)
+/// Marks a function that is called rarely: small on the host, and inlined on the device, where its loops become
+/// registers.
+#define COLLIDE_HD_RARE COLLIDE_ON_DEVICE(COLLIDE_HD_INLINE, COLLIDE_HD_NOINLINE inline)
 /// Marks a template that a program for the host may link instead of compiling it (compiled.hpp): it is not inline
 /// there.
-#define COLLIDE_HD_LINKED COLLIDE_HD_INLINE
-#else
-/// Marks a template that a program for the host may link instead of compiling it (compiled.hpp): it is not inline
-/// there.
-#define COLLIDE_HD_LINKED COLLIDE_HD
-#endif
+#define COLLIDE_HD_LINKED COLLIDE_ON_DEVICE(COLLIDE_HD_INLINE, COLLIDE_HD)
 
 #if defined(__GNUC__) && !defined(__CUDACC__)
 /// Marks a function that is called once in a while: small, and quick to compile.

@@ -117,7 +117,7 @@ class Simulation:
     threads    on the host, as for `Mesh`
 
     A list that is not in the package is compiled by g++, or nvcc, when it is first used, and kept in COLLIDE_CACHE or
-    ~/.cache/collide: some ten seconds. Raises `Error` without a compiler, or where effects do not fit together. Units are
+    ~/.cache/collide: five to ten seconds. Raises `Error` without a compiler, or where effects do not fit together. Units are
     those of the scene. The same steps give the same bits on every run, and on host and GPU.
 
     Pickle and copy.deepcopy copy the mesh, particles and parameters, as `save` does; `sums` begin anew.

@@ -80,6 +80,47 @@ Law law_of(double young, double restitution, double friction, double rolling = 0
   return Law{collide::one_material({young, 0.25, 1000}, {restitution, friction, rolling})};
 }
 
+// ---- shapes
+
+/// Volume and moments of a union are those of closed forms, and do not depend on how it lies in its frame; spheres
+/// begin where they were given.
+template <class Space>
+void check_shapes(Space const& space) {
+  double const turn = 3.141592653589793, r = 0.5, d = 0.6, lens = turn * (4 * r + d) * (2 * r - d) * (2 * r - d) / 12;
+  CHECK(dumbbell(d, r).volume == doctest::Approx(8 * turn / 3 * r * r * r - lens).epsilon(1e-6));
+  auto const within = collide::detail::moments_of_union({ball{{1, 2, 3}, r}}, 2000);
+  CHECK(within.second[1][2] / within.volume == doctest::Approx(6).epsilon(1e-6));
+  CHECK(within.second[0][0] / within.volume == doctest::Approx(1 + r * r / 5).epsilon(1e-6));
+  double q[4];
+  collide::turn_at_random(q, 9);
+  std::vector<ball> turned{ball{{0, 0, 0}, 0.5}, ball{{0.6, 0.2, 0}, 0.4}, ball{{0.3, 0.7, 0.3}, 0.3}};
+  auto const given = turned;
+  for (ball& b : turned) b.centre = collide::detail::rotated(q, b.centre);
+  clump_shape a = potato(), b = collide::shape_of_clump(turned);
+  CHECK(a.volume == doctest::Approx(b.volume).epsilon(2e-6));
+  std::sort(a.inertia, a.inertia + 3);
+  std::sort(b.inertia, b.inertia + 3);
+  for (int k = 0; k < 3; ++k) CHECK(a.inertia[k] == doctest::Approx(b.inertia[k]).epsilon(2e-6));
+  CHECK_THROWS_WITH_AS(collide::shape_of_clump({}), doctest::Contains("clump_shape"), collide::error);
+  a.inertia[2] = 1;
+  CHECK_THROWS_WITH_AS(a.check(), doctest::Contains("moments of inertia"), collide::error);
+
+  clumps_in<Space, double, granular_contact<hertz, mindlin>, collide::polydisperse> one(
+      space, {}, law_of<granular_contact<hertz, mindlin>>(1e5, 0.5, 0.3), {});
+  placed_clump c = clump_at(1, 2, 3);
+  c.scale = 2;
+  for (int k = 0; k < 3; ++k) c.moving.linear[k] = k + 1, c.moving.angular[k] = 2 - k;
+  collide::set_clumps(one.made, {potato()}, {c});
+  for (std::size_t i = 0; i < 3; ++i) {
+    vector const arm = given[i].centre * 2;
+    CHECK((one.template read<position>(i) - vector(1, 2, 3) - arm).norm() < 1e-14);
+    CHECK((one.template read<velocity>(i) - vector(1, 2, 3) - collide::detail::cross(vector(2, 1, 0), arm)).norm() <
+          1e-13);
+  }
+  c.at.rotation[1] = 1;
+  CHECK_THROWS_WITH_AS(collide::set_clumps(one.made, {potato()}, {c}), doctest::Contains("quaternion"), collide::error);
+}
+
 // ---- the motion of one
 
 /// A free asymmetric top keeps its angular momentum to the bit, its energy to what a step makes of it, and the length

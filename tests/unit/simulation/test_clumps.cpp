@@ -5,6 +5,8 @@
 using collide::host;
 using blocks = tests::lockstep<64, true>;
 
+TEST_CASE("clumps: shapes have volumes and moments of closed forms") { tests::check_shapes(host(1)); }
+
 TEST_CASE("clumps: a free top keeps its angular momentum and its energy") {
   tests::check_free_top<double>(host(1), 100'000);
   tests::check_free_top<float>(host(1), 10'000);

@@ -52,19 +52,9 @@ class aggregated_count {
   static constexpr std::uint32_t none = ~std::uint32_t{0};  ///< no counter has this number
 
   static COLLIDE_HD_INLINE std::uint32_t count_of_bits(std::uint32_t bits) {
-#if defined(__CUDA_ARCH__)
-    return static_cast<std::uint32_t>(__popc(bits));
-#else
-    return bits;  // 0 or 1: a thread is alone
-#endif
+    return COLLIDE_ON_DEVICE(static_cast<std::uint32_t>(__popc(bits)), bits);  // 0 or 1: a thread is alone
   }
-  static COLLIDE_HD_INLINE std::uint32_t lanes_before() {
-#if defined(__CUDA_ARCH__)
-    return (1u << threadIdx.x % 32) - 1;
-#else
-    return 0;
-#endif
-  }
+  static COLLIDE_HD_INLINE std::uint32_t lanes_before() { return COLLIDE_ON_DEVICE((1u << threadIdx.x % 32) - 1, 0); }
 
   std::uint32_t numbers_[N], with_[N], before_[N];
 };

@@ -59,11 +59,7 @@ COLLIDE_HD_INLINE void fetch_add(double* target, double n) {
 
 /// Sets the bits of `mask`.
 COLLIDE_HD_INLINE void fetch_or(std::uint32_t* target, std::uint32_t mask) {
-#if defined(__CUDA_ARCH__)
-  atomicOr(target, mask);
-#else
-  __atomic_fetch_or(target, mask, __ATOMIC_RELAXED);
-#endif
+  COLLIDE_ON_DEVICE(atomicOr(target, mask), __atomic_fetch_or(target, mask, __ATOMIC_RELAXED));
 }
 
 /// Makes `*target` the smaller of itself and `value`.
@@ -91,22 +87,12 @@ COLLIDE_HD_INLINE void fetch_max(U* target, U value) {
 }
 
 /// Orders memory: who sees what this thread writes, or adds atomically, afterwards, sees what it wrote before.
-COLLIDE_HD_INLINE void thread_fence() {
-#if defined(__CUDA_ARCH__)
-  __threadfence();
-#else
-  __atomic_thread_fence(__ATOMIC_ACQ_REL);
-#endif
-}
+COLLIDE_HD_INLINE void thread_fence() { COLLIDE_ON_DEVICE(__threadfence(), __atomic_thread_fence(__ATOMIC_ACQ_REL)); }
 
 /// A load of what other threads may change meanwhile.
 template <class T>
 COLLIDE_HD_INLINE T load_relaxed(T const* from) {
-#if defined(__CUDA_ARCH__)
-  return *from;
-#else
-  return __atomic_load_n(from, __ATOMIC_RELAXED);
-#endif
+  return COLLIDE_ON_DEVICE(*from, __atomic_load_n(from, __ATOMIC_RELAXED));
 }
 
 /// A store that other threads may make too.

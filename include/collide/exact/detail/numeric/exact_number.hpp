@@ -90,11 +90,7 @@ COLLIDE_HD_RARE int_words<N + M> operator*(int_words<N> const& x, int_words<M> c
 }
 
 COLLIDE_HD inline int trailing_zeros(std::uint64_t x) {  // x != 0
-#if defined(__CUDA_ARCH__)
-  return __ffsll(static_cast<long long>(x)) - 1;
-#else
-  return __builtin_ctzll(x);
-#endif
+  return COLLIDE_ON_DEVICE(__ffsll(static_cast<long long>(x)) - 1, __builtin_ctzll(x));
 }
 
 /// A float as a double, also if it is subnormal and the hardware flushes such to zero.

@@ -13,11 +13,7 @@ namespace collide::detail {
 
 /// How many of the highest bits of a number that is not 0 are 0.
 COLLIDE_HD_INLINE int leading_zeros(std::uint64_t x) {
-#if defined(__CUDA_ARCH__)
-  return __clzll(static_cast<long long>(x));
-#else
-  return __builtin_clzll(x);
-#endif
+  return COLLIDE_ON_DEVICE(__clzll(static_cast<long long>(x)), __builtin_clzll(x));
 }
 
 /// The unsigned integer of the size of `T`.

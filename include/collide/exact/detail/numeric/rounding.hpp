@@ -14,96 +14,36 @@
 
 namespace collide::detail {
 
-COLLIDE_HD_INLINE float mul_rn(float a, float b) {
-#if defined(__CUDA_ARCH__)
-  return __fmul_rn(a, b);
-#else
-  return a * b;
-#endif
-}
+COLLIDE_HD_INLINE float mul_rn(float a, float b) { return COLLIDE_ON_DEVICE(__fmul_rn(a, b), a * b); }
 
-COLLIDE_HD_INLINE double mul_rn(double a, double b) {
-#if defined(__CUDA_ARCH__)
-  return __dmul_rn(a, b);
-#else
-  return a * b;
-#endif
-}
+COLLIDE_HD_INLINE double mul_rn(double a, double b) { return COLLIDE_ON_DEVICE(__dmul_rn(a, b), a * b); }
 
-COLLIDE_HD_INLINE float div_rn(float a, float b) {
-#if defined(__CUDA_ARCH__)
-  return __fdiv_rn(a, b);
-#else
-  return a / b;
-#endif
-}
+COLLIDE_HD_INLINE float div_rn(float a, float b) { return COLLIDE_ON_DEVICE(__fdiv_rn(a, b), a / b); }
 
-COLLIDE_HD_INLINE double div_rn(double a, double b) {
-#if defined(__CUDA_ARCH__)
-  return __ddiv_rn(a, b);
-#else
-  return a / b;
-#endif
-}
+COLLIDE_HD_INLINE double div_rn(double a, double b) { return COLLIDE_ON_DEVICE(__ddiv_rn(a, b), a / b); }
 
 /// A quotient to within a few units in the last place, of numbers in the middle of the range; faster on a device.
-COLLIDE_HD_INLINE float div_approximately(float a, float b) {
-#if defined(__CUDA_ARCH__)
-  return __fdividef(a, b);
-#else
-  return a / b;
-#endif
-}
+COLLIDE_HD_INLINE float div_approximately(float a, float b) { return COLLIDE_ON_DEVICE(__fdividef(a, b), a / b); }
 COLLIDE_HD_INLINE double div_approximately(double a, double b) { return a / b; }
 
-COLLIDE_HD_INLINE float sqrt_rn(float a) {
-#if defined(__CUDA_ARCH__)
-  return __fsqrt_rn(a);
-#else
-  return std::sqrt(a);
-#endif
-}
+COLLIDE_HD_INLINE float sqrt_rn(float a) { return COLLIDE_ON_DEVICE(__fsqrt_rn(a), std::sqrt(a)); }
 
-COLLIDE_HD_INLINE double sqrt_rn(double a) {
-#if defined(__CUDA_ARCH__)
-  return __dsqrt_rn(a);
-#else
-  return std::sqrt(a);
-#endif
-}
+COLLIDE_HD_INLINE double sqrt_rn(double a) { return COLLIDE_ON_DEVICE(__dsqrt_rn(a), std::sqrt(a)); }
 
 /// a * b + c: fused on the device; on the host the compiler chooses.
-COLLIDE_HD_INLINE float mul_add(float a, float b, float c) {
-#if defined(__CUDA_ARCH__)
-  return __fmaf_rn(a, b, c);
-#else
-  return a * b + c;
-#endif
-}
+COLLIDE_HD_INLINE float mul_add(float a, float b, float c) { return COLLIDE_ON_DEVICE(__fmaf_rn(a, b, c), a * b + c); }
 
 COLLIDE_HD_INLINE double mul_add(double a, double b, double c) {
-#if defined(__CUDA_ARCH__)
-  return __fma_rn(a, b, c);
-#else
-  return a * b + c;
-#endif
+  return COLLIDE_ON_DEVICE(__fma_rn(a, b, c), a * b + c);
 }
 
 /// a * b + c, rounded once everywhere.
 COLLIDE_HD_INLINE float fma_rn(float a, float b, float c) {
-#if defined(__CUDA_ARCH__)
-  return __fmaf_rn(a, b, c);
-#else
-  return std::fma(a, b, c);
-#endif
+  return COLLIDE_ON_DEVICE(__fmaf_rn(a, b, c), std::fma(a, b, c));
 }
 
 COLLIDE_HD_INLINE double fma_rn(double a, double b, double c) {
-#if defined(__CUDA_ARCH__)
-  return __fma_rn(a, b, c);
-#else
-  return std::fma(a, b, c);
-#endif
+  return COLLIDE_ON_DEVICE(__fma_rn(a, b, c), std::fma(a, b, c));
 }
 
 /// The value as it was computed: a compiler that may reassociate sums (-ffast-math) cannot look through it.
@@ -154,13 +94,7 @@ COLLIDE_HD_INLINE vec3<T> scaled(vec3<T> const& a, T s) {
 }
 
 /// 1 / x to within two units in the last place, for x between 2^-126 and 2^126.
-COLLIDE_HD_INLINE float approx_reciprocal(float x) {
-#if defined(__CUDA_ARCH__)
-  return __fdividef(1.0f, x);
-#else
-  return 1 / x;
-#endif
-}
+COLLIDE_HD_INLINE float approx_reciprocal(float x) { return COLLIDE_ON_DEVICE(__fdividef(1.0f, x), 1 / x); }
 COLLIDE_HD_INLINE double approx_reciprocal(double x) { return 1 / x; }
 
 template <class T>

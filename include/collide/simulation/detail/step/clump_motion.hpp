@@ -132,8 +132,8 @@ struct place_clumps {
 template <class Space, class S, class Effects, class E>
 constexpr bool check_beside_clumps() {
   using motion = columns<position, velocity, angular_velocity>;
-  using written = typename writes_of<E>::type;
-  using named = union_of<written, typename reads_of<E>::type>;
+  using written = writes_of<E>;
+  using named = union_of<written, reads_of<E>>;
   constexpr bool is_known = std::is_same<E, clumps>::value || std::is_same<E, periodic_box>::value;
   constexpr bool moves =
       intersection_of<motion, written>::size != 0 &&
