@@ -87,8 +87,8 @@ class bucket::index {
     cells_.measure(space);
   }
 
-  /// Says that grids for spheres up to `radius` serve until the next build; the next query makes them, as it knows
-  /// better what they cost. Where spheres are sorted into the cells it does nothing.
+  /// Says that one grid for spheres up to `radius` serves until the next build; the next query makes it, as it knows
+  /// better what it costs. Where spheres are sorted into the cells it does nothing.
   template <class Space>
   void prepare(Space&, bucket const& options, S radius) {
     if (bins_spheres<Space>(options)) return;
@@ -224,12 +224,13 @@ class bucket::index {
   template <class Space, class Spheres>
   detail::query_plan<S> plan_grids(Space&, Spheres const& spheres, bool whole_boxes) {
     detail::wanted_grids<S> wanted = given_.value_or(detail::wanted_grids<S>{});
-    if (!spheres.one_radius()) {
-      if (!given_) wanted = {-1, 1};
-      if (wanted.max_count != 0) wanted.max_count = cells_.template max_grid_count<Space>(spheres.size());
-    } else if (S const radius = spheres.common_radius();
-               !given_ && detail::is_valid_radius(radius) && detail::is_finite(radius)) {
-      wanted = {cells_.grids().reach_for(radius, 4, radius), 1};
+    if (!given_) {
+      S const radius = spheres.common_radius();
+      if (!spheres.one_radius()) {
+        wanted = {-1, cells_.template max_grid_count<Space>(spheres.size())};
+      } else if (detail::is_valid_radius(radius) && detail::is_finite(radius)) {
+        wanted = {cells_.grids().reach_for(radius, 4, radius), 1};
+      }
     }
     wanted.whole_boxes = whole_boxes;
     detail::query_plan<S> plan;

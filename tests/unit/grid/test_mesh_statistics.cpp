@@ -102,7 +102,7 @@ TEST_CASE_TEMPLATE("mesh statistics: a histogram of the radii that are valid", S
   centres.resize(3 * radii.size());
   auto const spheres = collide::spheres_xyz(centres.data(), radii.size(), radii.data());
   size_histogram seen{};
-  radius_histogram_kernel<S> const kernel{spheres, 1, &seen};
+  radius_histogram_kernel<S> const kernel{spheres, &seen};
   tests::lockstep<8, false> const space;
   space.launch(grid_size<tests::lockstep<8, false>>(radii.size(), kernel), kernel);
   std::vector<std::uint64_t> counts(size_bins, 0);
@@ -111,14 +111,6 @@ TEST_CASE_TEMPLATE("mesh statistics: a histogram of the radii that are valid", S
   }
   CHECK(std::equal(counts.begin(), counts.end(), seen.counts));
   CHECK(counts[0] == 2);
-  size_histogram third{};
-  radius_histogram_kernel<S> const sample{spheres, 3, &third};
-  space.launch(grid_size<tests::lockstep<8, false>>(radii.size() / 3 + 1, sample), sample);
-  std::fill(counts.begin(), counts.end(), 0);
-  for (std::size_t i = 0; i < radii.size(); i += 3) {
-    if (radii[i] >= 0 && std::isfinite(radii[i])) ++counts[size_bin(radii[i] + S(0))];
-  }
-  CHECK(std::equal(counts.begin(), counts.end(), third.counts));
 }
 
 namespace {
@@ -128,10 +120,10 @@ using lanes_reversed = tests::lockstep<8, true>;
 
 /// The reaches that a block of `Space` chooses, where `before` is there.
 template <class Space>
-grid_reaches<float> chosen(size_histogram const& radii, float largest, float enough, std::uint64_t fewest, int most,
+grid_reaches<float> chosen(size_histogram const& radii, float enough, std::uint64_t fewest, int most,
                            grid_reaches<float> before = {}) {
   bool const anew = before.count == 0;
-  Space().launch(1, choose_reaches<float>{&radii, &before, largest, enough, fewest, most, anew});
+  Space().launch(1, choose_reaches<float>{&radii, &before, enough, fewest, most, anew});
   return before;
 }
 
@@ -149,43 +141,35 @@ TEST_CASE_TEMPLATE("reaches: grids a factor of 4 apart, each but the first for m
       radii.add(size_bin(r), 1, 0);
     }
     for (std::size_t fewest : {std::size_t{0}, std::size_t{50}, std::size_t{2000}, std::size_t{4000}}) {
-      for (float const given : {-1.f, 20.f, 1.f}) {
-        for (int const most : {2, max_grids}) {
-          CAPTURE(n);
-          CAPTURE(fewest);
-          CAPTURE(given);
-          auto const made = chosen<Space>(radii, given, 0.f, fewest, most);
-          auto const& reaches = made.reaches;
-          int const count = made.count;
-          REQUIRE(count >= 1);
-          REQUIRE(count <= most);
-          CHECK(made.are_new);
-          auto const up_to = [&](float reach) {
-            return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](float r) { return r <= reach; }));
-          };
-          if (given < 0) {
-            CHECK(up_to(reaches[0]) == n);
-          } else {
-            CHECK(reaches[0] == given);
-          }
-          for (int i = 1; i < count; ++i) {
-            CHECK(3.1f * reaches[i] <= reaches[i - 1]);  // what is given is no end of a bin
-            CHECK(up_to(reaches[i]) > fewest);
-          }
-          for (int i = count; i < max_grids; ++i) CHECK(reaches[i] == -1);
-          // no grid is left out that would have had enough
-          if (count < most) CHECK(up_to(reaches[count - 1] / 4 / 1.26f) <= fewest);
-          CHECK(!chosen<Space>(radii, given, 0.f, fewest, most, made).are_new);
-          if (count > 1) CHECK(chosen<Space>(radii, given, 0.f, fewest, 1, made).are_new);
-          float const enough = reaches[count - 1];
-          CHECK(chosen<Space>(radii, given, enough, fewest, most).count == count);
-          if (count > 1) CHECK(chosen<Space>(radii, given, reaches[0], fewest, most).count == 1);
+      for (int const most : {2, max_grids}) {
+        CAPTURE(n);
+        CAPTURE(fewest);
+        auto const made = chosen<Space>(radii, 0.f, fewest, most);
+        auto const& reaches = made.reaches;
+        int const count = made.count;
+        REQUIRE(count >= 1);
+        REQUIRE(count <= most);
+        CHECK(made.are_new);
+        auto const up_to = [&](float reach) {
+          return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](float r) { return r <= reach; }));
+        };
+        CHECK(up_to(reaches[0]) == n);
+        for (int i = 1; i < count; ++i) {
+          CHECK(4 * reaches[i] <= reaches[i - 1]);
+          CHECK(up_to(reaches[i]) > fewest);
         }
+        for (int i = count; i < max_grids; ++i) CHECK(reaches[i] == -1);
+        // no grid is left out that would have had enough
+        if (count < most) CHECK(up_to(reaches[count - 1] / 4 / 1.26f) <= fewest);
+        CHECK(!chosen<Space>(radii, 0.f, fewest, most, made).are_new);
+        if (count > 1) CHECK(chosen<Space>(radii, 0.f, fewest, 1, made).are_new);
+        float const enough = reaches[count - 1];
+        CHECK(chosen<Space>(radii, enough, fewest, most).count == count);
+        if (count > 1) CHECK(chosen<Space>(radii, reaches[0], fewest, most).count == 1);
       }
     }
   }
   size_histogram const none{};
-  CHECK(chosen<Space>(none, -1.f, 0.f, 0, 4).count == 1);
-  CHECK(chosen<Space>(none, -1.f, 0.f, 0, 4).reaches[0] == 0);
-  CHECK(chosen<Space>(none, 3.f, 0.f, 0, 4).reaches[0] == 3);
+  CHECK(chosen<Space>(none, 0.f, 0, 4).count == 1);
+  CHECK(chosen<Space>(none, 0.f, 0, 4).reaches[0] == 0);
 }

@@ -40,7 +40,7 @@ TEST_CASE("reaches: a device that is asked for spheres of many radii is not wait
     auto const reach_for = [&](std::size_t i) {
       index.prepare(space, {}, scene.spheres(i));
       auto const made = index.mesh_lookup().opened();
-      CHECK(made.grid_count == 4);
+      CHECK(made.grid_count == (given > 0 ? 1 : 4));
       CHECK(*made.total <= made.capacity);
       return made.grids[0].reach;
     };

@@ -73,7 +73,7 @@ TEST_CASE_TEMPLATE("groups of triangles: the histogram of radii that the host fi
   radii.push_back(S(0)), radii.push_back(S(-0.));
   std::vector<S> const centres(3 * radii.size());
   size_histogram seen{};
-  measure_radii<S> const kernel{collide::spheres_xyz(centres.data(), radii.size(), radii.data()), 1, &seen};
+  measure_radii<S> const kernel{collide::spheres_xyz(centres.data(), radii.size(), radii.data()), &seen};
   collide::host(2).launch(kernel.blocks(), kernel);
   std::vector<std::uint64_t> counts(size_bins, 0);
   for (S r : radii) {

@@ -42,12 +42,12 @@ struct mesh_measures {
 /// The grids that spheres ask for.
 template <class S>
 struct wanted_grids {
-  S reach = 0;               ///< of the largest; negative: the radius of the largest sphere
+  S reach = 0;               ///< of the only one; negative: as the radii of the spheres need it
   int max_count = 0;         ///< how many there may be
   bool whole_boxes = false;  ///< spheres that move look for triangles along their paths
 
   /// True if the radii of the spheres tell how far they reach.
-  bool by_radii() const { return max_count > 1 || reach < 0; }
+  bool by_radii() const { return reach < 0; }
 
   /// True if these do for spheres that ask for `other`.
   bool serve(wanted_grids const& other) const {
@@ -224,9 +224,6 @@ class cell_index {
   static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
   static constexpr int grids_without_readback = 4;
 
-  /// So many radii tell how far grids reach below a radius that was given.
-  static constexpr std::size_t sampled_radii = 4096;
-
   /// True if boxes of triangles are kept: a thread that works alone asks them before it reads a triangle, and a
   /// simulation in each step. Where threads work together to read the mesh again takes less time.
   template <class Space>
@@ -243,15 +240,14 @@ class cell_index {
     // of a sorted sphere its own reach decides what is near: grids pay where they reach farther than triangles do
     S enough = 0;
     std::uint64_t fewest = 0;
-    std::size_t const stride = wanted.reach < 0 ? 1 : 1 + spheres.size() / sampled_radii;
     if constexpr (bucket_tuning<Space>::bins_spheres) {
       enough = 2 * static_cast<S>(measures_.statistics.data()->extents.median());
     } else {
-      fewest = fewest_of_grid() / stride;
+      fewest = fewest_of_grid();
     }
     auto* const measured = radii_.reserve(space.resource(), 1);
-    measure_radii_of(space, spheres, stride, &measured->radii);
-    detail::choose_reaches<S> const kernel{&measured->radii, &measured->reaches, wanted.reach, enough,
+    measure_radii_of(space, spheres, &measured->radii);
+    detail::choose_reaches<S> const kernel{&measured->radii, &measured->reaches, enough,
                                            fewest,           wanted.max_count,   anew};
     space.launch(1, kernel);
     return &measured->reaches;

@@ -149,14 +149,13 @@ struct compute_boxes {
   }
 };
 
-/// Kernel functor of a block of one thread: the histogram of the finite, valid radii of every `stride`-th sphere.
+/// Kernel functor of a block of one thread: the histogram of the finite, valid radii.
 template <class S>
 struct measure_radii {
   static constexpr int items = 4;
   static constexpr std::size_t share = 4096;  ///< spheres of a block
 
   sphere_view<S> spheres;
-  std::size_t stride;
   size_histogram* histogram;
 
   /// How many blocks there are.
@@ -172,7 +171,7 @@ struct measure_radii {
     static_assert(Block::num_threads == 1, "collide: radii are measured by blocks of one thread");
     s.radii.clear();
     std::size_t const begin = block.index() * share, end = min(begin + share, spheres.size());
-    for (std::size_t i = (begin + stride - 1) / stride * stride; i < end; i += stride) {
+    for (std::size_t i = begin; i < end; ++i) {
       S const r = spheres.radius(i);
       if (is_valid_radius(r) && is_finite(r)) s.radii.add(size_bin(r > 0 ? r : S(0)), 1, 0);
     }
@@ -180,16 +179,16 @@ struct measure_radii {
   }
 };
 
-/// Puts the histogram of the finite, valid radii of every `stride`-th sphere into memory of the space.
+/// Puts the histogram of the finite, valid radii into memory of the space.
 template <class S, class Space>
-void measure_radii_of(Space& space, sphere_view<S> const& spheres, std::size_t stride, size_histogram* to) {
+void measure_radii_of(Space& space, sphere_view<S> const& spheres, size_histogram* to) {
   size_histogram::clear(space, to);
   if constexpr (bucket_tuning<Space>::bins_spheres) {
-    measure_radii<S> const kernel{spheres, stride, to};
+    measure_radii<S> const kernel{spheres, to};
     space.launch(kernel.blocks(), kernel);
   } else {
-    radius_histogram_kernel<S> const kernel{spheres, stride, to};
-    space.launch(grid_size<Space>((spheres.size() + stride - 1) / stride, kernel), kernel);
+    radius_histogram_kernel<S> const kernel{spheres, to};
+    space.launch(grid_size<Space>(spheres.size(), kernel), kernel);
   }
 }
 

@@ -120,13 +120,12 @@ S largest_coordinate(Space& space, mesh_view<S> const& mesh, buffer<mesh_statist
   return space.read(seen).largest_coordinate();
 }
 
-/// Kernel functor: the histogram of the finite, valid radii of every `stride`-th sphere.
+/// Kernel functor: the histogram of the finite, valid radii.
 template <class S>
 struct radius_histogram_kernel {
   static constexpr int items = 4;
 
   sphere_view<S> spheres;
-  std::size_t stride;
   size_histogram* histogram;
 
   template <class Block>
@@ -142,8 +141,8 @@ struct radius_histogram_kernel {
       for (int k = 0; k < Block::items; ++k) {
         std::size_t const i =
             first + static_cast<std::size_t>(k) * Block::num_threads + static_cast<std::size_t>(thread_rank);
-        if (i * stride >= spheres.size()) break;
-        S const r = spheres.radius(i * stride);
+        if (i >= spheres.size()) break;
+        S const r = spheres.radius(i);
         if (is_valid_radius(r) && is_finite(r)) s.histogram.add(block, histogram, size_bin(r > 0 ? r : S(0)), 0);
       }
     });
@@ -168,7 +167,6 @@ struct choose_reaches {
 
   size_histogram const* radii;
   grid_reaches<S>* chosen;  ///< in: those that are there, unless all are made anew
-  S largest;                ///< the first reach; negative: that of the largest sphere
   S enough;
   std::uint64_t fewest;
   int max_count;  ///< reaches
@@ -198,10 +196,7 @@ struct choose_reaches {
     for (int b = first; b <= last; ++b) left += counts[b];
     grid_reaches<S> wanted{{}, 0, makes_anew};
     int n = 0, next = last;
-    if (largest >= 0 || last < first) {
-      wanted.reaches[n++] = max(largest, S(0));
-      next = static_cast<int>(size_bin(wanted.reaches[0])) - bins_per_factor_4;
-    }
+    if (last < first) wanted.reaches[n++] = 0;
     COLLIDE_NO_UNROLL
     for (int b = last; b >= first && n < max_count; left -= counts[b--]) {
       if (b > next || counts[b] == 0 || (n != 0 && left <= fewest)) continue;
