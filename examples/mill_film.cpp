@@ -85,10 +85,18 @@ void write_frame(std::string const& path, mill const& of) {
             {{"radius", std::vector<float>(r.begin(), r.end())}, {"speed", speeds}}, vtk_cells::dots, {});
 }
 
+/// Seconds since the first call.
+double seconds() {
+  using clock = std::chrono::steady_clock;
+  static auto const begin = clock::now();
+  return std::chrono::duration<double>(clock::now() - begin).count();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   if (argc < 2) return 2;
+  seconds();
   std::string const folder = std::string(argv[1]) + "/";
   auto const wanted = static_cast<std::size_t>(argc > 2 ? std::atoll(argv[2]) : 5'000);
   double const turns = argc > 3 ? std::atof(argv[3]) : 1;
@@ -99,6 +107,7 @@ int main(int argc, char** argv) try {
   bed_region const bed;
   double const usual = std::cbrt(0.48 * bed.volume() / static_cast<double>(wanted) * 3 / (4 * io::pi));
   auto grains = fill_number(bed, size_distribution::uniform(0.8 * usual, 1.18 * usual), wanted);
+  std::fprintf(stderr, "%zu grains laid after %.1f s\n", wanted, seconds());
   std::vector<double> moving;
   for (std::size_t i = 0; i < grains.centres.size(); i += 3) {
     double &x = grains.centres[i], &z = grains.centres[i + 2];
@@ -124,6 +133,10 @@ int main(int argc, char** argv) try {
   made.reserve(2 * wanted);  // for lists of neighbours
   made.set(spheres.view(), velocities.data());
   write_vtk_mesh(folder + "walls.vtp", mesh);
+  double const ready = seconds();
+  write_frame(folder + "begin.vtp", made);
+  double const per_frame = seconds() - ready;
+  std::fprintf(stderr, "ready after %.1f s, a frame takes %.2f s\n", ready, per_frame);
 
   // a row of the curve, and of the last twelfth of a turn a frame, after so many steps
   int const rows = lifters * frames;
@@ -137,12 +150,12 @@ int main(int argc, char** argv) try {
   double spent = 0;
   for (int k = 1; k <= last; ++k) {
     forces.clear(space);
-    auto const start = std::chrono::steady_clock::now();
+    double const start = seconds();
     made.steps(every, dt);
     space.synchronize();
-    spent += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (k == frames / 2)
-      last = static_cast<int>(std::min<double>(last, std::max<double>(frames, k * most_seconds / spent)));
+    spent += seconds() - start;
+    if (seconds() + frames * (spent / k + per_frame) > most_seconds) last = std::min(last, k + frames);
+    if (k % frames == 1) std::fprintf(stderr, "%d of %d rows after %.1f s\n", k, last, seconds());
     double const torque = -forces.read(space)[0].angular[1] / row;
     curve << made.time() << "," << static_cast<double>(k) / rows << "," << torque << "," << torque * rate << std::endl;
     if (k <= last - frames) continue;

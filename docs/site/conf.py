@@ -46,7 +46,7 @@ def add_to_page(app, name, template, context, doctree):
     without navigation."""
     if "body" in context:
         context["body"] = with_sizes(context["body"], HERE, first_at_once=name == "index")
-    picture = html_baseurl.rstrip("/") + "/_images/gallery-snow.png"
+    picture = html_baseurl.rstrip("/") + "/_images/gallery-mill.jpg"
     tags = {"og:type": "website", "og:site_name": "collide", "og:title": context.get("title", "collide"),
             "og:description": "Contacts between millions of spheres and a triangle mesh, exact, on CPUs and NVIDIA GPUs",
             "og:image": picture, "twitter:card": "summary_large_image"}

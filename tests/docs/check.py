@@ -10,7 +10,7 @@ glossary  Each name in docs/glossary.md and docs/development/words.md is in the 
 members   The tables of members in docs/guide.md have all that the headers have, and nothing else; the pages of docs/api/
           are as scripts/members writes them.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; the README is short; no docstring of include/ begins with
-          a word of FOREIGN_BEGINNINGS, which name nothing. No sentence of a user's page begins with a word of NAMELESS, except a question.
+          a word of FOREIGN_BEGINNINGS, which name nothing, and no comment there says "but for". No sentence of a user's page begins with a word of NAMELESS, except a question.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
@@ -60,6 +60,7 @@ FOREIGN = {
     r"lists? of neighbours": "neighbour list",
     r"lanes?": "thread",
     r"made anew": "rebuilt",
+    r"but for": "except for",
 }
 LONGEST = 120
 README_WORDS = 850
@@ -241,6 +242,8 @@ def english():
             found = re.match(rf"\s*/// {FOREIGN_BEGINNINGS}", words)
             if found and (not re.match(r"\s*///(?!<)", before) or "\\file" in before):
                 yield f"{header}:{line}: a docstring begins with {found[1]!r}: name what it is about"
+            if re.search(r"\bbut for\b", words):
+                yield f"{header}:{line}: 'but for': write except for"
             before = words
 
 

@@ -1,5 +1,5 @@
 /// \file
-/// Markers of functions and loops for host and device: the only macros of the library, but for those of version.hpp,
+/// Markers of functions and loops for host and device: the only macros of the library, except for those of version.hpp,
 /// compiled.hpp and simulation/detail/step/compiled_search.hpp.
 #pragma once
 

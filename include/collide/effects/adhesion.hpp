@@ -51,7 +51,7 @@ struct adhesion {
   }
 
  private:
-  /// How fast a particle touches the mesh, but for what the forces of the step have given it: 0 of what rests.
+  /// How fast a particle touches the mesh, except for what the forces of the step have given it: 0 of what rests.
   template <class S>
   COLLIDE_HD_INLINE static S touching_speed(mesh_contact<S> const& t) {
     S const force = detail::dot(t.force_dv, t.force_dv), with = detail::dot(t.velocity_before, t.force_dv);

@@ -100,7 +100,7 @@ struct angular_velocity : detail::vector_column {};
 
 /// 1 if the particle is there, 0 if its place is free, within a step 2 to 4 if it has just been made; see `emit` and
 /// `absorb`. An effect of your own makes a particle in its `begin_step` by writing 1 at a free place. No contact
-/// remembers what was there, and columns that no such effect writes have their first values again, but for position,
+/// remembers what was there, and columns that no such effect writes have their first values again, except for position,
 /// velocity and radius.
 struct alive : detail::byte_column {
   template <class S>

@@ -55,8 +55,8 @@ using query_windings = decltype(std::declval<Query const&>().windings());
 /// The winding number of each point: the solid angle of all triangles as seen from there, divided by 4 pi (A. Jacobson
 /// et al., "Robust inside-outside segmentation using generalized winding numbers", ACM Transactions on Graphics 32(4),
 /// 2013). Above 1/2 is inside. For meshes with holes and for triangle soups, of which `contains` makes no sense; the
-/// triangles' normals must point outwards. Of a closed mesh it is whole, but for `error`; next to the surface that may
-/// be 1/2, and `contains` is exact.
+/// triangles' normals must point outwards. Of a closed mesh it is whole, except for `error`; next to the surface that
+/// may be 1/2, and `contains` is exact.
 ///
 /// With `bvh` triangles far away are seen together, by moments of their normals up to the second (G. Barill et al.,
 /// "Fast winding numbers for soups and clouds", ACM Transactions on Graphics 37(4), 2018): those in a sphere whose

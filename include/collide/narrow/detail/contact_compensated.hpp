@@ -144,7 +144,7 @@ COLLIDE_HD inline void project_onto_boundary_compensated(long_triangle const& l,
   }
 }
 
-/// radius - distance, rounded once but for the last bits.
+/// radius - distance, rounded once except for the last bits.
 COLLIDE_HD inline double depth_of(double radius, double_double const& distance) {
   if (radius >= 4 * distance.high) return radius - distance.high;
   double_double const depth = exact_sum_of(radius, -distance.high);

@@ -14,7 +14,7 @@ namespace collide::detail {
 struct measured_foot {
   double distance;
   double_double weight[3];  ///< of the corners
-  vec3<double> direction;   ///< from there to the point, but for the length; on the triangle its normal, or 0
+  vec3<double> direction;   ///< from there to the point, except for the length; on the triangle its normal, or 0
 };
 
 /// The sum of both, as a number that is scaled.
@@ -133,7 +133,7 @@ COLLIDE_HD_NOINLINE inline measured_foot measure_foot(triangle<double> const& t,
   return found;
 }
 
-/// The point with these weights, rounded once but for the last bits.
+/// The point with these weights, rounded once except for the last bits.
 COLLIDE_HD inline vec3<double> point_of_weights(triangle<double> const& t, double_double const (&weight)[3]) {
   vec3<double> point;
   for (int k = 0; k < 3; ++k) {

@@ -66,7 +66,7 @@ class exact_nearest_search {
 
   COLLIDE_HD S squared_bound() const { return high_ < 0 ? S(-1) : rounded_up<S>(mul_rn(high_, high_)); }
 
-  /// The nearest triangle. `direction` is then set: from the closest point to the point, but for the length; on the
+  /// The nearest triangle. `direction` is then set: from the closest point to the point, except for the length; on the
   /// triangle its normal, or 0.
   COLLIDE_HD nearest_triangle<S> result(vec3<double>& direction) const {
     // guard: nearest-reach

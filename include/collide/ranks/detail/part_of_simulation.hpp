@@ -454,7 +454,7 @@ class part_of_simulation {
   void look_for_moved() {
     std::uint32_t* const flag = flag_.reserve(space().resource(), 1);
     space().fill(flag, 0, sizeof *flag);
-    // half of the skin, but for rounding
+    // half of the skin, except for rounding
     find_moved<S, state_type, around_type> const moved{state(), effects().space(), last(), S(0.495) * skin_, flag};
     space().for_each(own(), moved);
   }

@@ -65,7 +65,7 @@ struct unpack_answers {
 
 /// The search for these pairs. A rank queries its own triangles with its spheres where they are. Spheres near triangles
 /// of other ranks are sent there, and pairs come back. So many go at a time that no rank needs more memory than for
-/// about a `chunk` from each. Everything is in memory of the space, but for the triangles that come back.
+/// about a `chunk` from each. Everything is in memory of the space, except for the triangles that come back.
 template <class Detector>
 class remote_pairs {
   using S = typename Detector::scalar;

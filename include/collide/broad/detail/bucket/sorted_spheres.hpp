@@ -196,7 +196,7 @@ class sorted_spheres {
     constexpr std::size_t share = measure_displacements<S>::batches * 64;
     space.launch((spheres.size() + share - 1) / share, kernel);
     S const length = sqrt_rn(from_bits<S>(space.read(found))), far = from_bits<S>(space.read(found + 1));
-    // of none is it larger, but for some rounding
+    // of none is it larger, except for some rounding
     return swept_bounding_sphere(moving_sphere<S>{{{far, far, far}, spheres.common_radius()}, {length, S(0), S(0)}})
                .radius *
            (1 + 32 * S(ieee_traits<float>::unit_roundoff));

@@ -174,7 +174,7 @@ struct enter_triangles {
 };
 
 /// Kernel functor: finds a place for the entries of each cell, and sets a bit for every cell that has some. Which
-/// cell's come first is open; those of cells next to each other are next to each other, but for the ends of blocks.
+/// cell's come first is open; those of cells next to each other are next to each other, except for the ends of blocks.
 template <class S>
 struct allocate_entries {
   static constexpr int items = 8;  ///< cells of a thread: their bits are a byte
@@ -254,7 +254,7 @@ template <class S>
 class cell_lists {
  public:
   /// Memory of the lists of `cells` cells, of the number of all entries, and of bits: `table_size` words, which the
-  /// caller empties before `enter`, but for the bits.
+  /// caller empties before `enter`, except for the bits.
   template <class Space>
   item_range* to_empty(Space& space, std::size_t cells) {
     cells_ = cells;

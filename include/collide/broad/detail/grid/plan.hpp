@@ -208,7 +208,7 @@ struct plan_grid {
     g.level[0] = {};
   }
 
-  /// The grid but for its levels: of these there are none if it can hold no triangle, or serve no sphere.
+  /// The grid except for its levels: of these there are none if it can hold no triangle, or serve no sphere.
   COLLIDE_HD grid_header<S> header_of(std::size_t i, S& extent) const {
     grid_header<S> g{};
     extent = 0;

@@ -31,7 +31,7 @@ struct tree_levels {
   }
 };
 
-/// A point, times the power of two that makes the coordinates of a mesh at most 2: exact, but for what underflows.
+/// A point, times the power of two that makes the coordinates of a mesh at most 2: exact, except for what underflows.
 template <class S>
 COLLIDE_HD_INLINE vec3<double> in_unit_range(vec3<S> const& x, mesh_statistics<S> const* mesh) {
   return scaled(cast_to<double>(x), inverse_power_of_two(static_cast<double>(mesh->largest_coordinate())));

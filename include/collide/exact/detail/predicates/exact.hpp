@@ -180,14 +180,14 @@ class exact_triangle {
     return best;
   }
 
-  /// From the projection to the centre, but for the length; 0 if the centre is there.
+  /// From the projection to the centre, except for the length; 0 if the centre is there.
   COLLIDE_HD vec3<double> direction_to_centre(int projection) const {
     if (projection != face) return direction(projection);
     double const height = sign_of_height();
     return normal() * -height;
   }
 
-  /// (b - a) x (c - a), but for its length.
+  /// (b - a) x (c - a), except for its length.
   COLLIDE_HD vec3<double> normal() const { return direction(face); }
 
  private:
@@ -288,7 +288,7 @@ class exact_triangle {
     return candidates;
   }
 
-  /// From a corner or an edge to the centre, or the normal of the face; but for the length.
+  /// From a corner or an edge to the centre, or the normal of the face; except for the length.
   COLLIDE_HD vec3<double> direction(int projection) const {
     scaled_double w[3];
     int top = -(1 << 30);

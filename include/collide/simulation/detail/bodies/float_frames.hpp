@@ -110,7 +110,7 @@ struct float_frames {
   float_frame<S> const* frames;
   S margin;  ///< how much larger than the particles' the radius is that the grid has to serve
 
-  /// True if a particle's place may be off by no more than there is room for, but for how far bodies are.
+  /// True if a particle's place may be off by no more than there is room for, except for how far bodies are.
   COLLIDE_HD_INLINE bool serve(S radius) const {
     return mul_rn(float_frame_error<S>, radius) <= margin && is_finite(mul_rn(4 * radius, radius));
   }

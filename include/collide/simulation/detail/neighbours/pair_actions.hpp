@@ -336,7 +336,7 @@ class pair_actions {
   }
 
   /// Particles meet, and sum up. All items of a particle are known once those of the places before it are: so it sums
-  /// up while they are in the cache, but for what other threads know.
+  /// up while they are in the cache, except for what other threads know.
   template <class Space>
   void interact(Space const& space, meet_once<S, Effects> const& meet, sum_actions<S, Effects> const& sum) const {
     constexpr std::size_t places = 256;  // that meet before they sum up

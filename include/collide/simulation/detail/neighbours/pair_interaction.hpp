@@ -260,7 +260,7 @@ struct interact_listed : pair_interaction<S, Effects> {
     }
   }
 
-  /// The same for the list of a particle, of which bit k of `before` says was(k).
+  /// Calls f for those on the list of a particle, of which bit k of `before` says was(k).
   template <class F>
   COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, std::uint32_t before, F const& f) const {
     auto const& places = this->order;

@@ -136,8 +136,8 @@ class verlet_list {
            is_at_border_.bytes() + border_.bytes() + contacts_.bytes() + pairs_.bytes();
   }
 
-  /// The first part of `renew`: finds out whether lists are to be made anew for particles where they now are, but for
-  /// copies of other ranks', which may not yet be there.
+  /// The first part of `renew`: finds out whether lists are to be made anew for particles where they now are, except
+  /// for copies of other ranks', which may not yet be there.
   template <class Space>
   void check(Space& space, state_type const& state, typename Effects::space_type const& around) {
     if (!(around == around_)) space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
@@ -356,7 +356,7 @@ class verlet_list {
     std::sort(along_.begin(), along_.end(), [&](auto a, auto b) { return o.curve[a] < o.curve[b]; });
     for (std::uint32_t const b : along_) scan_cells{o.ends, &o.header->count}(b);
   }
-  S largest_move() const { return S(0.495) * skin_; }  ///< half of the skin, but for rounding
+  S largest_move() const { return S(0.495) * skin_; }  ///< half of the skin, except for rounding
 
   typename Effects::space_type around_{};
   cells cells_{};

@@ -54,7 +54,7 @@ COLLIDE_HD_INLINE void record_impulse(Context const& context, Particle& p,
 /// Tells the effects what holds a particle that sleeps against what would accelerate or turn it for a part of the step:
 /// it does not move. The surfaces that have supported it give that: what they gave on the mean, and of the difference,
 /// and of what would turn it, each has a part as large as what it gave. What lies on others that sleep is held by these
-/// but for a rest, which goes to what rests, unless effects may hold it that know no mesh.
+/// except for a rest, which goes to what rests, unless effects may hold it that know no mesh.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void record_sleeping(Context const& context, Particle& p, typename Context::scalar fraction) {
   using S = typename Context::scalar;
