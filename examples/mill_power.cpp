@@ -2,7 +2,7 @@
 /// A tumbling mill: ore and steel spheres in a drum with lifters, whose walls come from an STL file in millimetres.
 /// Prints torque and power in each quarter of a turn, and writes the wear of the walls for ParaView.
 ///
-/// Usage: mill_power [STL [RPM [FILLING [VTP]]]]: a closed mesh around the y axis; turns a minute; the volume of grains
+/// Usage: mill_power [STL [RPM [FILLING [VTP]]]]: a closed mesh around the y axis; turns a minute; the volume of
 /// grains over that of the drum; the file with pressure and sliding work of each triangle. Without arguments it makes a
 /// drum.
 #include <cmath>

@@ -27,11 +27,11 @@ namespace collide {
 /// Build O(triangles + entries), query O(spheres + candidates). Memory: 8 scalars for each triangle, but in
 /// `cuda_shared` for simulations only; for each grid entries of 8 bytes, at most 16 for each triangle (48 where there
 /// are fewer spheres) and one for each four spheres, and cells of 8 bytes, at most 32 for each triangle; several grids
-/// only where radii differ by more than a factor of 4, on a device each but the first for more than two spheres a
-/// triangle. The host sorts the spheres instead where there are many (broad/detail/bucket/sorted_spheres.hpp): that
-/// takes O(triangles + spheres) for a query, 1 scalar per triangle, about 36 bytes more where triangles that follow
-/// each other are far apart, 4 bytes per cell, and about 12 scalars for each sphere in a cell with triangles, 19 if it
-/// moves; no entries.
+/// only where radii differ by more than a factor of 4. A device has room for four, each with half of its entries, where
+/// radii differ and there are more than two spheres a triangle. The host sorts the spheres instead where there are many
+/// (broad/detail/bucket/sorted_spheres.hpp): that takes O(triangles + spheres) for a query, 1 scalar per triangle,
+/// about 36 bytes more where triangles that follow each other are far apart, 4 bytes per cell, and about 12 scalars for
+/// each sphere in a cell with triangles, 19 if it moves; no entries.
 struct bucket {
   /// Width of the cells, in the units of the coordinates; 0 lets the library choose, which is nearly always right. The
   /// study's was 4 R. They are wider where triangles would meet too many of them.

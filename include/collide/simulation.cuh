@@ -265,7 +265,9 @@ class simulation {
     if constexpr (std::is_same<Column, radius>::value || std::is_same<Column, material>::value) know_smallest();
     constexpr bool moves = detail::contains<collide::columns<velocity, angular_velocity>, Column> ||
                            detail::contains<typename effects_type::acceleration_reads, Column>;
-    constexpr bool meets_others = detail::contains<collide::columns<position, radius, material, alive>, Column>;
+    constexpr bool meets_others = detail::contains<
+        collide::columns<position, radius, material, alive, clump_centre, clump_rotation, clump_offset, in_clump>,
+        Column>;
     if constexpr (moves || meets_others) wake_all();
     if constexpr (meets_others) {
       next_meeting_ = effects_type::ends_after_meeting ? detail::meeting::of_all : detail::meeting::in_step;
@@ -366,8 +368,10 @@ class simulation {
     static_assert(!detail::contains<collide::columns<position, velocity, angular_velocity, radius>, Column>,
                   "collide: assign: in a scene with clumps set_clumps says where spheres are, and how they move");
     if constexpr (detail::contains<detail::union_of<typename clumps::writes, collide::columns<material>>, Column>)
-      space_.for_each(state_.size, detail::place_clumps<S, effects_type>{state_});
-    if constexpr (std::is_same<Column, in_clump>::value) neighbours_.fit(space_, state_.size, radii_);
+      space_.for_each(state_.size, detail::place_clumps<S, effects_type>{state_, effects_.space()});
+    if constexpr (std::is_same<Column, in_clump>::value) {
+      if (is_set_) neighbours_.fit(space_, state_.size, radii_);
+    }
   }
 
   /// Finds out by which radii effects limit steps. A source's particles are of material 0. May wait.
@@ -409,7 +413,7 @@ class simulation {
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
     if constexpr (effects_type::ends_after_meeting) move(dt);
     if constexpr (effects_type::has_clumps)
-      space_.for_each(state_.size, detail::move_clumps<S, effects_type>{state_, effects_, dt});
+      space_.for_each(state_.size, detail::move_clumps<S, effects_type>{state_, effects_, effects_.space(), dt});
     wake_by_bodies(dt);
     wake_where_others_went(dt);
   }

@@ -43,7 +43,8 @@ inline std::pair<nb::bytes, double> fill(std::vector<double> const& region, std:
     } else if (region.size() == 7) {
       fill_region(collide::cylinder_region({r[0], r[1], r[2]}, {r[3], r[4], r[5]}, r[6]));
     } else {
-      fill_region(collide::mesh_region(collide::triangle_soup(r, region.size() / 9)));
+      fill_region(
+          collide::mesh_region(collide::triangle_soup(r, region.size() / 9), collide::host(is_forked() ? 1 : 0)));
     }
   }
   found.centres.insert(found.centres.end(), found.radii.begin(), found.radii.end());

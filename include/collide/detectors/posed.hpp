@@ -25,9 +25,10 @@ namespace collide {
 /// triangle have in the whole; contacts are in the world.
 ///
 /// A body sees a sphere as bodies of simulations do: the centre is taken to its frame, R^-1 (centre - position), in
-/// double, and rounded to the scalar of the coordinates; the radius is as it is. Whether that sphere touches a
-/// triangle, as it lies in memory, is decided as the narrow phase decides, so with `exact` as in real arithmetic.
-/// Contacts are computed there, and point and normal are taken to the world the same way. The same bits in every space.
+/// double, and rounded to the scalar of the coordinates; the radius is as it is. A displacement is the end less the
+/// centre, both taken there, in double, and then rounded. Whether that sphere touches a triangle, as it lies in memory,
+/// is decided as the narrow phase decides, so with `exact` as in real arithmetic. Contacts are computed there, and
+/// point and normal are taken to the world the same way. The same bits in every space.
 ///
 /// `nearest` and `k_nearest` decide within a body as the narrow phase says; of bodies the one with the smaller
 /// `distance` as that is rounded comes first, and of equal ones the smaller number. The point is in the world.
@@ -160,6 +161,7 @@ class posed {
 
   void place(std::vector<pose> const& poses) {
     if (poses.size() != bodies_.size()) throw error("collide: posed: query needs a pose for each body");
+    for (auto& of_part : detectors_) of_part.space() = space_;  // which may have another stream by now
     std::vector<body_state> states(poses.size());
     for (std::size_t k = 0; k < poses.size(); ++k) {
       states[k].at = poses[k];

@@ -36,8 +36,7 @@ class streamed {
   }
 
   /// For each chunk, in order: queries it with the sink, and calls f(first, sink). What the sink then holds is about
-  /// that chunk alone: sphere i there is sphere `first` + i of all. Without spheres nothing is called. Where radii
-  /// differ, build the detector with a radius before: then no chunk waits to see them.
+  /// that chunk alone: sphere i there is sphere `first` + i of all. Without spheres nothing is called.
   ///
   /// `spheres` are in host memory, in any layout. What lies between them is copied too, so layouts without gaps are the
   /// fastest. Their memory may change when this returns. What the sink or f throws is passed on; everything can be used

@@ -77,8 +77,8 @@ COLLIDE_HD_INLINE vec3<S> turning_of(turned_axes<S> const& axes, several<S, 4> c
   return axes.to_space(turning);
 }
 
-/// Turns a frame around its own axis number `axis`, by nearly the angle with the tangent 4 t of a quarter of it;
-/// `local` is a vector of space as the frame sees it.
+/// Turns a frame around its own axis number `axis`, by nearly the angle 4 t, of which a quarter has the
+/// tangent t; `local` is a vector of space as the frame sees it.
 template <class S>
 COLLIDE_HD_INLINE void turn_around(several<S, 4>& q, vec3<S>& local, int axis, S t) {
   S const part = 1 / (1 + t * t), c = (1 - t * t) * part, s = 2 * t * part;  // of half the angle

@@ -51,8 +51,9 @@ struct wall_work : detail::sum_column {};
 /// `energy` makes of it what was lost. A half kick of contacts has their force times the mean of the velocities before
 /// and after it, and is next to the way of the step. So with `velocity_verlet` energies of motion and in `gravity`, and
 /// the work taken, less that given, stay the same to rounding, whatever dt is. What is taken from a particle that
-/// presses on a wall is what it loses against the wall. After `set`, `assign` or `set_mesh` the first half kick is
-/// not counted. 25 scalars and 32 bytes a particle, and as much in the lists of neighbours.
+/// presses on a wall is what it loses against the wall. After `set` the first half kick is
+/// not counted, after `assign` of places it is that of the old ones. 25 scalars and 32 bytes a particle, and as much in
+/// the lists of neighbours.
 ///
 /// \tparam Materials  whose masses: `one_density`, or that of `granular_contact`
 template <class Materials = one_density>
@@ -116,6 +117,7 @@ struct contact_work {
     vec3<double> const push = exact<S>(p[pairs_push{}]) + exact<S>(p[walls_push{}]),
                        turn = exact<S>(p[pairs_turn{}]) + exact<S>(p[walls_turn{}]), slide = exact<S>(p[slide_push{}]),
                        roll = turn - exact<S>(p[slide_turn{}]), give = exact<S>(p[walls_give{}]);
+    if constexpr (!has_half_kicks && Forces::have_contacts) kicked += rounded_to<S>(push);
     double const r = static_cast<double>(p.radius()),
                  mass = sphere_mass(1.0, r) * made_of.template density_of<double>(p);
     auto const taken_by_kick = [&](double side) {  // -1: before `kicked`, 1: after it

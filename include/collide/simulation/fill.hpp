@@ -85,8 +85,8 @@ class mesh_region {
   double lower[3];  ///< lowest coordinates
   double upper[3];  ///< highest coordinates
 
-  /// O(triangles log triangles). `error` if the volume is not above 0.
-  explicit mesh_region(mesh_view<double> const& mesh) {
+  /// O(triangles log triangles), with the threads of `space`. `error` if the volume is not above 0.
+  explicit mesh_region(mesh_view<double> const& mesh, host space = host()) : tree_(space) {
     for (int k = 0; k < 3; ++k) lower[k] = std::numeric_limits<double>::infinity(), upper[k] = -lower[k];
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       triangle<double> const t = mesh[i];

@@ -30,7 +30,7 @@ class pairs : public detail::array_in_space<pair> {
   /// True if all of them are stored.
   bool complete() const { return size() == total(); }
 
-  /// Makes room in memory of `space` for queries of up to so many spheres, and `most` pairs: they then allocate
+  /// Makes room in memory of `space` for queries of up to so many spheres, and `max_pairs` pairs: they then allocate
   /// nothing.
   template <class Space>
   void reserve(Space const& space, std::size_t spheres, std::size_t max_pairs) {

@@ -199,7 +199,8 @@ class Mesh:
     process calls on the host use one thread; calls on a GPU are an `Error`, and so is a mesh that another thread was using
     at the fork. Ctrl-C ends a call on the host within a second, except for a sort of 10^8 pairs. Pickle and copy.deepcopy copy
     the arrays. On a GPU work is put on the current stream of the library that the centres are of, and a call waits only as
-    far as it must read a number back: `any` with one radius does not, after a first call.
+    far as it must read a number back: `any` does not, after a first call, if
+    there is one radius or there are at most 262,144 triangles.
     """
 
     def __init__(
@@ -291,8 +292,9 @@ class Mesh:
     ) -> Array:
         """(n,) bool: whether each sphere touches anything. Arguments as for `query`.
 
-        out  (n,) uint8 or bool: where flags go. On a GPU such a call, with one radius, allocates nothing and does not
-             wait, once a first one has been made: it can be captured in a CUDA graph.
+        out  (n,) uint8 or bool: where flags go. On a GPU such a call allocates nothing and does not
+             wait, once a first one has been made, with one radius or up to 262,144 triangles: it can be captured in
+             a CUDA graph.
         """
         return self._ask(self._mesh.query, bool, out, "any", centres, radius, displacements, precision, poses=poses)
 

@@ -7,9 +7,8 @@
 /// that move. In a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(sphere)` is true if the sphere can touch no triangle: it is quick;
 ///   - `begin(sphere)` is a cursor, and `next(sphere, cursor, max_count, range)` moves it on and gives at most
-///   `max_count` more
-///     entries, until it returns false; one may appear more than once if the sphere moves; `cursor.at_end()` is true if
-///     it is known to return false the next time;
+///     `max_count` more entries, until it returns false; one may appear more than once if the sphere moves;
+///     `cursor.at_end()` is true if it is known to return false the next time;
 ///   - `range.at(k)` is an entry, which is a triangle, `range.passes_coverage(entry)` a quick test whether the sphere
 ///     could touch it, and `near(around, triangle)` one whether a sphere could all of whose path is in the sphere
 ///     `around`.

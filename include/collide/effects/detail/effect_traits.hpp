@@ -113,6 +113,7 @@ using has_end_step_alone = std::bool_constant<is_valid<end_step_alone_call, E, S
 template <class Effects, class P, class S>
 struct forces_on {
   static constexpr S kick_after = S(Effects::integrator::kick_after);  ///< part of the step's acceleration that is last
+  static constexpr bool have_contacts = Effects::keeps_pair_forces;    ///< contacts are among them
 
   Effects const& effects;
   P const& particle;

@@ -213,6 +213,7 @@ struct particle_state<S, columns<C...>>
   /// A group's values of a column, and of all columns of a list, as they are read.
   template <class D>
   struct column_pack {
+    static_assert(column_layout<D, S>::width <= 3, "scratch memory is for vectors");
     pack4<column_element<D, S>> of[column_layout<D, S>::width];
   };
   template <class List>

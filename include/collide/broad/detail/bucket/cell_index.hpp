@@ -266,7 +266,7 @@ class cell_index {
     // what is held for another number of cells would come on top of what the budget was planned for
     if (limits_.memory_budget != 0 && grids_.cells != cells) lists_.release();
     grids_.cells = cells;
-    grids_.entry_limit = may_be_fewer ? plan.entries / 2 : plan.entries;
+    grids_.entry_limit = may_be_fewer && plan.grids > 1 ? plan.entries / 2 : plan.entries;
     grids_.table_bits = plan.table_bits;
     grids_.count = plan.grids;
     grids_.memory.reserve(space.resource(), max_grids);

@@ -50,8 +50,8 @@ struct moving_clump {
     turn_freely(own[clump_rotation{}], own[clump_inertia{}], own[clump_momentum{}], time);
   }
 
-  /// Gives spheres their velocities, and, if it has `moved`, their places.
-  COLLIDE_HD_INLINE void store(bool moved) const {
+  /// Gives spheres their velocities, and, if it has `moved`, their places, which are inside a box that repeats.
+  COLLIDE_HD_INLINE void store(typename Effects::space_type const& space, bool moved) const {
     turned_axes<S> const axes(own[clump_rotation{}]);
     vec3<S> const turning = turning_of(axes, own[clump_inertia{}], own[clump_momentum{}]);
     state.store(own, first, part{});
@@ -59,6 +59,7 @@ struct moving_clump {
       vec3<S> const arm = axes.to_space(vector(clump_offset{}, i));
       particle<S, columns<position, velocity, angular_velocity>> p;
       p[position{}] = own[clump_centre{}] + arm;
+      if constexpr (Effects::repeats) p[position{}] = space.inside(p[position{}]);
       p[velocity{}] = own[clump_velocity{}] + cross(turning, arm);
       p[angular_velocity{}] = turning;
       if (moved) state.store(p, i, columns<position>{});
@@ -85,6 +86,7 @@ template <class S, class Effects>
 struct move_clumps {
   particle_state<S, typename Effects::all> state;
   Effects effects;
+  typename Effects::space_type space;
   S dt;
 
   COLLIDE_HD void operator()(std::size_t i) const {
@@ -92,7 +94,7 @@ struct move_clumps {
     moving_clump<S, Effects> clump(state, i);
     clump.kick(effects, S(Effects::integrator::kick_before) * dt);
     clump.move(dt);
-    clump.store(true);
+    clump.store(space, true);
   }
 };
 
@@ -109,7 +111,7 @@ struct end_clumps {
     moving_clump<S, Effects> clump(state, i);
     clump.kick(effects, S(Effects::integrator::kick_after) * dt);
     if constexpr (Effects::repeats) clump.own[clump_centre{}] = space.inside(clump.own[clump_centre{}]);
-    clump.store(false);
+    clump.store(space, false);
   }
 };
 
@@ -118,11 +120,12 @@ struct end_clumps {
 template <class S, class Effects>
 struct place_clumps {
   particle_state<S, typename Effects::all> state;
+  typename Effects::space_type space;
 
   COLLIDE_HD void operator()(std::size_t i) const {
     if (state.at(in_clump{})[i] != i) return;
     moving_clump<S, Effects> const clump(state, i);
-    clump.store(true);
+    clump.store(space, true);
     if constexpr (contains<typename Effects::all, material>)
       clump.for_each_sphere([&](std::size_t k) { state.at(material{})[k] = state.at(material{})[i]; });
   }
