@@ -400,6 +400,16 @@ void check_clumps_in_boxes(Space const& space) {
     CHECK(std::get<1>(inside)[i] == doctest::Approx(std::get<1>(across)[i]).epsilon(1e-8));
   }
   CHECK(std::abs(std::get<1>(inside)[7]) > 0.1);  // they have met
+  world<double> w;
+  add_floor(w, 2, 1);  // as large as the box: spheres meet it inside of that
+  scene at_side(space, w, law_of<law>(1e6, 0.6, 0.4), {{-2, -2, -1}, {2, 2, 3}});
+  std::vector<placed_clump> falling{clump_at(-1.99, 0.3, 0.4)};
+  falling[0].moving.linear[2] = -1;
+  collide::set_clumps(at_side.made, {shape}, falling);
+  at_side.made.steps(4000, 1e-4);
+  auto const bounced = at_side.made.template to_host<velocity>();
+  CHECK(bounced[2] > 0.1);
+  CHECK(bounced[5] == doctest::Approx(bounced[2]).epsilon(1e-6));
   scene small(space, {}, law_of<law>(1e6, 0.6, 0.4), {{0, 0, 0}, {1.2, 4, 4}});
   collide::set_clumps(small.made, {dumbbell(1, 0.1)}, {clump_at(0, 0, 0)});
   CHECK_THROWS_WITH_AS(small.made.step(1e-4), doctest::Contains("periodic_box"), collide::error);
