@@ -403,7 +403,7 @@ void check_clumps_in_boxes(Space const& space) {
   world<double> w;
   add_floor(w, 2, 1);  // as large as the box: spheres meet it inside of that
   scene at_side(space, w, law_of<law>(1e6, 0.6, 0.4), {{-2, -2, -1}, {2, 2, 3}});
-  std::vector<placed_clump> falling{clump_at(-1.99, 0.3, 0.4)};
+  std::vector<placed_clump> falling{clump_at(-2.1, 0.3, 0.4)};
   falling[0].moving.linear[2] = -1;
   collide::set_clumps(at_side.made, {shape}, falling);
   at_side.made.steps(4000, 1e-4);
