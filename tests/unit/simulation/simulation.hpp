@@ -446,7 +446,7 @@ void check_memory_of_steps(MakeSpace make, std::pmr::memory_resource* upstream) 
   // four and at least two to a particle, by 65 in 64; on a CPU for each 64 cells where they are along a curve
   using meets = std::common_type<collide::simulation<detector, collide::sphere_contact>>;
   std::size_t const along_curve = collide::detail::works_alone<Space> ? 2 * n / 64 * 4 : 0;
-  CHECK(bytes_of(meets{}, n) == 24 * n + (4 + 28 + 12 + 64 + 4) * n + 2 * n * 4 * 65 / 64 + 24 + along_curve);
+  CHECK(bytes_of(meets{}, n) == 24 * n + (4 + 28 + 12 + 64 + 4) * n + 2 * n * 4 * 65 / 64 + 20 + along_curve);
 }
 
 /// A column and an effect of a user: what touches the mesh becomes warm, and cools down.
