@@ -176,7 +176,7 @@ struct in_clump {
   template <class S>
   using value = id;
   template <class S>
-  static constexpr id initial = no_id;
+  static constexpr id initial = no_id;  ///< of a grain by itself
 };
 
 /// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
