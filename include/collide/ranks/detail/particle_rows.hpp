@@ -14,6 +14,7 @@
 #include <collide/effects/detail/contact_memory.hpp>
 #include <collide/effects/detail/particle.hpp>
 #include <collide/ranks/detail/device_exchange_buffer.hpp>
+#include <collide/ranks/detail/send_plan.hpp>
 #include <collide/spaces/detail/host_array.hpp>
 
 namespace collide::detail {
