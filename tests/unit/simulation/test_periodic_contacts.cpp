@@ -49,8 +49,8 @@ TEST_CASE("periodic contacts: sides that are too short are an error") {
   tests::running<simulation> made(host(1), w, sphere_contact{10}, periodic_box{{-1, -1, 0}, {1, 1, 0.44}});
   CHECK_THROWS_WITH_AS(made.simulation.step(1e-3f),
                        "collide: periodic_box: particles meet across its sides, and so each must be at least 0.441719 "
-                       "long, two diameters of the largest with the skin of its neighbours: make the box larger, or "
-                       "the particles smaller",
+                       "long, two diameters of the largest with the skin of its neighbours, or a clump: make the box "
+                       "larger, or the particles smaller",
                        collide::error);
   made.simulation.effect<periodic_box>().upper[2] = 0.442;
   CHECK_NOTHROW(made.simulation.step(1e-3f));
