@@ -50,7 +50,7 @@ sim["velocity"] = numpy.zeros((2, 3), numpy.float32)
 positions: Any = sim["position"] if "position" in sim else None
 energy: float = sim.energy(1.0)["kinetic"] + sim.time + sim.largest_time_step()
 report: collide.ContactReport = sim.contact_report()
-filled: numpy.ndarray = collide.fill(((0, 0, 0), (1, 1, 1)), ("uniform", 0.1, 0.2), 0.3, seed=1).centres
+filled: Any = collide.fill(((0, 0, 0), (1, 1, 1)), ("uniform", 0.1, 0.2), 0.3, seed=1).centres
 neighbours: Any = sim.contacts()
 
 
