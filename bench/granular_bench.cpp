@@ -1,14 +1,13 @@
 /// \file
 /// Sphere-steps a second of granular contact: granular_bench [host|device] [LARGEST] [SMALLEST] [STEPS]
 ///
-/// Spheres of one size in a box of twelve triangles, in double: from SMALLEST (1,000) to LARGEST (10,000,000, on the host
-/// 100,000) of them: `packed`, a cubic lattice shaken by a little, in which most touch five others; and `loose`, where few are near
-/// others. Laws with and without memory, with rolling, with cohesion. Prints a line of JSON for each:
-/// microseconds a step (the least of five times as many steps as asked for, 100), sphere-steps a second, bytes a sphere,
-/// and how many others a sphere touches in the mean, -1 of more than 100,000. On the host, time is that of one processor;
-/// on a device, between events. Built by hand:
-/// nvcc -x cu -std=c++17 -O3 -arch=sm_90 -fmad=false --expt-relaxed-constexpr -Iinclude -Iexamples -Ibench, or with g++
-/// for the host.
+/// Spheres of one size in a box of twelve triangles, in double: from SMALLEST (1,000) to LARGEST (10,000,000, on the
+/// host 100,000) of them: `packed`, a cubic lattice shaken by a little, in which most touch five others; and `loose`,
+/// where few are near others. Laws with and without memory, with rolling, with cohesion. Prints a line of JSON for
+/// each: microseconds a step (the least of five times as many steps as asked for, 100), sphere-steps a second, bytes a
+/// sphere, and how many others a sphere touches in the mean, -1 of more than 100,000. On the host, time is that of one
+/// processor; on a device, between events. Built by hand: nvcc -x cu -std=c++17 -O3 -arch=sm_90 -fmad=false
+/// --expt-relaxed-constexpr -Iinclude -Iexamples -Ibench, or with g++ for the host.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -68,11 +67,13 @@ struct bed {
 template <class Space, class Law>
 void measure(Space const& space, char const* where, char const* law, char const* scene, bed const& of, int steps) {
   simulation<detector<bucket, karabassi<>, Space, double>, gravity, Law, velocity_verlet> made(
-      space, gravity{0, 0, -9.81}, [] {
+      space, gravity{0, 0, -9.81},
+      [] {
         Law by;
         by.made_of = one_material({1e7, 0.3, 2500}, {0.5, 0.5});
         return by;
-      }(), velocity_verlet{});
+      }(),
+      velocity_verlet{});
   std::size_t const n = of.centres.size() / 3;
   auto const walls = upload(space, triangle_soup(of.corners.data(), of.corners.size() / 9));
   auto const spheres = upload(space, spheres_xyz(of.centres.data(), n, radius_of_all));
@@ -108,7 +109,8 @@ void run(Space const& space, char const* where, std::size_t smallest, std::size_
     measure<Space, granular_contact<hertz, dashpot>>(space, where, "hertz, dashpot", "packed", packed, steps);
     measure<Space, granular_contact<hertz, mindlin>>(space, where, "hertz, mindlin", "packed", packed, steps);
     measure<Space, granular_contact<hertz, mindlin>>(space, where, "hertz, mindlin", "loose", loose, steps);
-    measure<Space, granular_contact<hertz, mindlin, epsd>>(space, where, "hertz, mindlin, epsd", "packed", packed, steps);
+    measure<Space, granular_contact<hertz, mindlin, epsd>>(space, where, "hertz, mindlin, epsd", "packed", packed,
+                                                           steps);
     measure<Space, granular_contact<hertz, mindlin, none, sjkr>>(space, where, "hertz, mindlin, sjkr", "packed", packed,
                                                                  steps);
   }

@@ -1,7 +1,7 @@
 /// The work that contacts take and walls give, against closed forms; and the balance of energy, which closes.
 #include <collide/effects/bounds.hpp>
-#include <collide/effects/contact_work.hpp>
 #include <collide/effects/contact_forces.hpp>
+#include <collide/effects/contact_work.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/effects/sleep.hpp>
 #include <collide/simulation/fill.hpp>
