@@ -34,15 +34,29 @@ struct sphere_action {
   }
 };
 
+/// A sphere in memory, beside its centre and radius: to be read at once.
+template <class S>
+struct alignas(8 * sizeof(S)) stored_motion {
+  static constexpr unsigned width = 8;
+  S numbers[width];  ///< velocity, density, spin, and the number of its solid
+
+  COLLIDE_HD_INLINE void set(meeting_sphere<S> const& s, int solid) {
+    for (int k = 0; k < 3; ++k) numbers[k] = s.velocity[k], numbers[4 + k] = s.spin[k];
+    numbers[3] = s.density, numbers[7] = S(solid);
+  }
+  COLLIDE_HD_INLINE int solid() const { return int(numbers[7]); }
+  template <class P>
+  static COLLIDE_HD_INLINE void get(P const (&columns)[width], meeting_sphere<P>& s) {
+    for (int k = 0; k < 3; ++k) s.velocity[k] = columns[k], s.spin[k] = columns[4 + k];
+    s.density = columns[3];
+  }
+};
+
 /// An action in memory.
 template <class S, unsigned Width>
 struct alignas(Width == 7 ? 8 * sizeof(S) : sizeof(S)) stored_action {
   S numbers[Width];
 
-  template <class P>
-  COLLIDE_HD_INLINE void set(sphere_action<P>& action, int k) {
-    action.template for_each_number<Width>([&](P& x, int n) { numbers[n] = lane(x, k); });
-  }
   /// As it acts on the first or the `second` of the two. Of what is 0 the sign stays.
   COLLIDE_HD_INLINE sphere_action<S> on(bool second) const {
     sphere_action<S> action;

@@ -106,11 +106,13 @@ class one_material {
     return S(solid_.density);
   }
   static constexpr int pairs = 1;  ///< of solids
-  /// The number of the pair of two particles' solids, from 0.
+  /// The number of a particle's solid, from 0.
   template <class Particle>
-  COLLIDE_HD_INLINE int pair_of(Particle const&, Particle const&) const {
+  static COLLIDE_HD_INLINE int solid_of(Particle const&) {
     return 0;
   }
+  /// The number of the pair of two solids, from 0.
+  static COLLIDE_HD_INLINE int pair_of(int, int) { return 0; }
   /// Constants of the pair of solids of a number.
   COLLIDE_HD_INLINE detail::contact_material const& of_pair(int) const { return pair_; }
   template <class Particle>
@@ -155,7 +157,7 @@ class materials {
     solids_[i] = s;
     is_set_[i] = true;
     for (int j = 0; j < N; ++j) {
-      detail::contact_material& pair = pairs_[place(i, j)];
+      detail::contact_material& pair = pairs_[pair_of(i, j)];
       if (pair.young > 0) pair.set_solids(solids_[i], solids_[j]);
     }
   }
@@ -165,7 +167,7 @@ class materials {
     check_number(j);
     detail::check(p);
     if (!is_set_[i] || !is_set_[j]) throw error("collide: materials: set both solids before their pair");
-    pairs_[place(i, j)] = detail::contact_material(solids_[i], solids_[j], p);
+    pairs_[pair_of(i, j)] = detail::contact_material(solids_[i], solids_[j], p);
   }
 
   /// Throws `error`, which names the solid or the pair that nobody has set.
@@ -174,7 +176,7 @@ class materials {
                             "materials: wall_material is the number of a solid");
     for (int i = 0; i < N; ++i) {
       for (int j = i; j < N; ++j) {
-        if (pairs_[place(i, j)].young > 0) continue;
+        if (pairs_[pair_of(i, j)].young > 0) continue;
         throw error("collide: materials: the pair of " + std::to_string(i) + " and " + std::to_string(j) +
                     " is missing: call set_pair");
       }
@@ -205,35 +207,34 @@ class materials {
 
   template <class S, class Particle>
   COLLIDE_HD_INLINE S density_of(Particle const& p) const {
-    return S(solids_[number_of(p)].density);
+    return S(solids_[solid_of(p)].density);
   }
   static constexpr int pairs = N * (N + 1) / 2;  ///< of solids
-  /// The number of the pair of two particles' solids, from 0.
+  /// The number of a particle's solid, from 0.
   template <class Particle>
-  COLLIDE_HD_INLINE int pair_of(Particle const& p, Particle const& other) const {
-    return place(number_of(p), number_of(other));
+  static COLLIDE_HD_INLINE int solid_of(Particle const& p) {
+    int const number = p[material{}];
+    return number < N ? number : N - 1;
+  }
+  /// The number of the pair of two solids, from 0.
+  static COLLIDE_HD_INLINE int pair_of(int i, int j) {
+    return i < j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j;
   }
   /// Constants of the pair of solids of a number.
   COLLIDE_HD_INLINE detail::contact_material const& of_pair(int number) const { return pairs_[number]; }
   template <class Particle>
   COLLIDE_HD_INLINE detail::contact_material const& between(Particle const& p, Particle const& other) const {
-    return of_pair(pair_of(p, other));
+    return of_pair(pair_of(solid_of(p), solid_of(other)));
   }
   template <class Particle>
   COLLIDE_HD_INLINE detail::contact_material const& with_wall(Particle const& p, id triangle, id body) const {
     int wall = wall_material;
     if (body != no_id && body_materials != nullptr) wall = body_materials[body];
     if (triangle_materials != nullptr) wall = triangle_materials[triangle];
-    return pairs_[place(number_of(p), wall < N ? wall : N - 1)];
+    return pairs_[pair_of(solid_of(p), wall < N ? wall : N - 1)];
   }
 
  private:
-  static COLLIDE_HD_INLINE int place(int i, int j) { return i < j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
-  template <class Particle>
-  static COLLIDE_HD_INLINE int number_of(Particle const& p) {
-    int const number = p[material{}];
-    return number < N ? number : N - 1;
-  }
   template <class Space>
   static void check_each(Space const& space, std::uint8_t const* numbers, std::size_t n, char const* what) {
     std::vector<std::uint8_t> each(numbers == nullptr ? 0 : n);

@@ -5,6 +5,7 @@
 /// Comparisons give a mask. `any(mask)` and `either(mask, a, b)` take the place of branches, and do the same for bool.
 #pragma once
 
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -155,21 +156,19 @@ COLLIDE_HD_INLINE pack<T, N> mul_rn(pack<T, N> const& a, pack<T, N> const& b) {
 }
 template <class T, int N>
 COLLIDE_HD_INLINE pack<T, N> sqrt_rn(pack<T, N> const& a) {
-  pack<T, N> root;
 #if defined(__SSE2__)
-  constexpr int at_a_time = 16 / int(sizeof(T));
-  for (int k = 0; k < N; k += at_a_time) {
-    T const* const from = reinterpret_cast<T const*>(&a) + k;
-    T* const to = reinterpret_cast<T*>(&root) + k;
-    if constexpr (sizeof(T) == 8) {
-      _mm_storeu_pd(to, _mm_sqrt_pd(_mm_loadu_pd(from)));
-    } else {
-      _mm_storeu_ps(to, _mm_sqrt_ps(_mm_loadu_ps(from)));
-    }
+  if constexpr (sizeof(T) == 8 && N == 4) {  // in registers
+    __m128d const low = _mm_sqrt_pd(__m128d{a.v[0], a.v[1]}), high = _mm_sqrt_pd(__m128d{a.v[2], a.v[3]});
+    return pack<T, N>(typename pack<T, N>::vector{low[0], low[1], high[0], high[1]});
+  } else if constexpr (sizeof(T) == 4 && N == 8) {
+    __m128 const low = _mm_sqrt_ps(__m128{a.v[0], a.v[1], a.v[2], a.v[3]}),
+                 high = _mm_sqrt_ps(__m128{a.v[4], a.v[5], a.v[6], a.v[7]});
+    return pack<T, N>(
+        typename pack<T, N>::vector{low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]});
   }
-#else
-  for (int k = 0; k < N; ++k) root.v[k] = sqrt_rn(a.v[k]);
 #endif
+  pack<T, N> root;
+  for (int k = 0; k < N; ++k) root.v[k] = sqrt_rn(a.v[k]);
   return root;
 }
 
@@ -177,12 +176,78 @@ COLLIDE_HD_INLINE pack<T, N> sqrt_rn(pack<T, N> const& a) {
 template <class S>
 using pack_of = pack<S, 32 / int(sizeof(S))>;
 
+/// Four rows of four numbers become four columns.
+COLLIDE_HD_INLINE void transpose(pack<double, 4>& a, pack<double, 4>& b, pack<double, 4>& c, pack<double, 4>& d) {
+#if defined(__clang__)
+#define COLLIDE_SHUFFLE(x, y, ...) __builtin_shufflevector(x, y, __VA_ARGS__)
+#else
+  typedef std::int64_t order __attribute__((vector_size(32)));
+#define COLLIDE_SHUFFLE(x, y, ...) __builtin_shuffle(x, y, order{__VA_ARGS__})
+#endif
+  auto const ab = COLLIDE_SHUFFLE(a.v, b.v, 0, 4, 2, 6), ab_odd = COLLIDE_SHUFFLE(a.v, b.v, 1, 5, 3, 7),
+             cd = COLLIDE_SHUFFLE(c.v, d.v, 0, 4, 2, 6), cd_odd = COLLIDE_SHUFFLE(c.v, d.v, 1, 5, 3, 7);
+  a.v = COLLIDE_SHUFFLE(ab, cd, 0, 1, 4, 5), b.v = COLLIDE_SHUFFLE(ab_odd, cd_odd, 0, 1, 4, 5);
+  c.v = COLLIDE_SHUFFLE(ab, cd, 2, 3, 6, 7), d.v = COLLIDE_SHUFFLE(ab_odd, cd_odd, 2, 3, 6, 7);
+#undef COLLIDE_SHUFFLE
+}
+/// Four numbers in memory.
+typedef double four_in_memory __attribute__((vector_size(32), aligned(8), may_alias));
+typedef double two_in_memory __attribute__((vector_size(16), aligned(8), may_alias));
+
 #else
 
 template <class S>
 using pack_of = S;
 
 #endif
+
+/// Reads rows of numbers, one a lane: columns[c] becomes number c of each. row(k) is that of lane k.
+template <unsigned Width, class P, class F>
+COLLIDE_HD_INLINE void load_rows(P (&columns)[Width], F const& row) {
+#if defined(__GNUC__) && !defined(__CUDACC__)
+  if constexpr (std::is_same<P, pack<double, 4>>::value && Width % 4 == 0) {
+    auto const four = [](double const* from) COLLIDE_HOT {
+      return P(typename P::vector(*reinterpret_cast<four_in_memory const*>(from)));
+    };
+    auto const *const a = row(0), *const b = row(1), *const c = row(2), *const d = row(3);
+    COLLIDE_UNROLL
+    for (unsigned k = 0; k < Width; k += 4) {
+      P w = four(a + k), x = four(b + k), y = four(c + k), z = four(d + k);
+      transpose(w, x, y, z);
+      columns[k] = w, columns[k + 1] = x, columns[k + 2] = y, columns[k + 3] = z;
+    }
+    return;
+  }
+#endif
+  for (unsigned c = 0; c < Width; ++c) columns[c] = from_lanes<P>::of([&](int k) { return row(k)[c]; });
+}
+/// Writes the first `Used` numbers of such rows.
+template <unsigned Used, unsigned Width, class P, class F>
+COLLIDE_HD_INLINE void store_rows(P const (&columns)[Width], F const& row) {
+  static_assert(Used <= Width, "there are as many columns as numbers of a row");
+#if defined(__GNUC__) && !defined(__CUDACC__)
+  if constexpr (std::is_same<P, pack<double, 4>>::value && Width % 4 == 0) {
+    auto *const a = row(0), *const b = row(1), *const c = row(2), *const d = row(3);
+    COLLIDE_UNROLL
+    for (unsigned k = 0; k < Used; k += 4) {
+      P w = columns[k], x = columns[k + 1], y = columns[k + 2], z = columns[k + 3];
+      transpose(w, x, y, z);
+      auto const put = [left = Used - k](double* to, P const& from) COLLIDE_HOT {
+        if (left >= 4) {
+          *reinterpret_cast<four_in_memory*>(to) = from.v;
+          return;
+        }
+        if (left >= 2) *reinterpret_cast<two_in_memory*>(to) = two_in_memory{from.v[0], from.v[1]};
+        if (left % 2 == 1) to[left - 1] = from.v[left - 1];
+      };
+      put(a + k, w), put(b + k, x), put(c + k, y), put(d + k, z);
+    }
+    return;
+  }
+#endif
+  for (unsigned c = 0; c < Used; ++c)
+    for (int k = 0; k < lanes_of<P>; ++k) row(k)[c] = lane(columns[c], k);
+}
 
 /// f(numbers of one lane) in each lane, where that takes a branch of its own.
 template <class P, class F, class... Q>

@@ -25,10 +25,11 @@
 
 namespace collide::detail {
 
-/// The effects of a scene, as lists of neighbours see them that remember nothing.
+/// The effects of a scene, as lists of neighbours see them that remember nothing, and keep only spheres.
 template <class Effects>
 struct without_memory : Effects {
   using remembered = columns<>;
+  using interaction_copies = columns<>;
   explicit without_memory(Effects const& e) : Effects(e) {}
 };
 
@@ -39,29 +40,41 @@ struct pair_items {
   using record = contact_record<S, typename Effects::remembered>;
   using action = stored_action<S, Effects::action_width>;
 
-  static constexpr std::uint8_t remembers = 1, acts = 2, meets = 4;
+  static constexpr std::uint8_t remembers = 1, acts = 2, meets = 4, is_upward = 8;
 
   std::uint32_t* firsts;
   std::uint32_t* others;  ///< places
-  std::uint8_t* marks;    ///< of these: `remembers` something, `acts` in this step, and any is seen as in contact
+  std::uint8_t* marks;    ///< of these: `remembers` something, `acts` in this step, and any is seen as in contact;
+                          ///< `is_upward`: the first of the two has the larger number
   record* records;
   action* actions;
+  stored_motion<S>* motions;  ///< by places
+  /// Of the particle at place i, in the order of the others' numbers, from entry_firsts[i] on: twice the item, and 1
+  /// where the particle is the second of the pair.
+  std::uint32_t* entry_firsts;
+  std::uint32_t* entries;
 };
 
-/// Entries of the lists of neighbours: twice the item, and 1 where the particle is the second of the pair. In place of
-/// the number of a place, once all pairs have items.
-inline constexpr std::uint32_t no_entry = 0xfffffffeu;
+/// Kernel functor of `for_each` over places: how particles move that meet.
+template <class S, class Effects>
+struct store_motions {
+  particle_state<S, typename Effects::all> state;
+  sorted_particles<S, without_memory<Effects>> order;
+  stored_motion<S>* motions;
+  Effects const& effects;
 
-/// Calls f(entry) for all entries of the list of the particle at a place.
-template <class Order, class F>
-COLLIDE_HD_INLINE void for_each_entry(Order const& order, std::size_t i, F const& f) {
-  if (order.list(0, i) != order.overflow_mark) {
-    for (std::uint32_t k = 0; k < Order::listed && order.list(k, i) != no_entry; ++k) f(order.list(k, i));
-  } else {
-    std::uint32_t const first = order.list(1, i), size = order.list(2, i);
-    for (std::uint32_t k = first; k < first + size; ++k) f(order.runs[k]);
+  void operator()(std::size_t i) const {
+    if (i >= order.header->count) return;
+    using interaction = particle<S, typename Effects::interaction>;
+    interaction p;
+    state.load(p, order.numbers[i]);
+    effects.for_mutual([&](auto const& effect) {
+      using effect_type = std::decay_t<decltype(effect)>;
+      particle_access<effect_type, interaction> const seen(p);
+      motions[i].set(effect.template see<S>([&](int) { return seen; }), effect.made_of.solid_of(seen));
+    });
   }
-}
+};
 
 /// Functor over ranges of places: finds what touches, and asks the effect.
 template <class S, class Effects>
@@ -76,6 +89,18 @@ struct meet_once {
   meeting what;
 
   COLLIDE_AS_O3 void operator()(std::size_t begin, std::size_t end) const {
+    multiversioned([=, this] { meet(begin, end); });
+  }
+
+ private:
+  using P = pack_of<S>;
+  static constexpr std::uint32_t capacity = 1024;  ///< for pairs that touch
+
+  struct touching_pair {
+    std::uint32_t place, other, item;
+  };
+
+  COLLIDE_HD_INLINE void meet(std::size_t begin, std::size_t end) const {
     touching_pair found[capacity];
     std::uint32_t size = 0;
     std::uint32_t const last_item = items.firsts[order.header->count] - 1;
@@ -84,116 +109,135 @@ struct meet_once {
       std::uint32_t const last = items.firsts[i + 1];
       for (std::uint32_t k = items.firsts[i]; k < last; ++k) {
         std::uint32_t const other = items.others[k];
-        prefetch(order.spheres + items.others[min(k + 16, last_item)]);
+        std::uint32_t const soon = items.others[min(k + 16, last_item)];
+        prefetch(order.spheres + soon);
+        prefetch(items.motions + soon);
         bool const overlap = order.within_skin(own, order.spheres[other], S(0));
-        auto const was = static_cast<std::uint8_t>(items.marks[k] & items.remembers);
+        auto const was = static_cast<std::uint8_t>(items.marks[k] & (items.remembers | items.is_upward));
         found[size] = {static_cast<std::uint32_t>(i), other, k};
         items.marks[k] = static_cast<std::uint8_t>(was | (overlap ? items.meets : 0));
-        size += overlap || was != 0;
+        size += overlap || (was & items.remembers) != 0;
         if (size == capacity) {
-          meet(found, size);
+          meet_sorted(found, size);
           size = 0;
         }
       }
     }
-    meet(found, size);
+    meet_sorted(found, size);
   }
 
- private:
-  using interaction = typename ordered::interaction;
-  using P = pack_of<S>;
-  static constexpr std::uint32_t capacity = 1024;  ///< for pairs that touch
-
-  struct touching_pair {
-    std::uint32_t place, other, item;
-  };
-
   /// Pairs of the same two solids are together.
-  void meet(touching_pair* found, std::uint32_t size) const {
+  COLLIDE_HD_INLINE void meet_sorted(touching_pair* found, std::uint32_t size) const {
     effects.for_mutual([&](auto const& effect) {
-      constexpr unsigned kinds = std::decay_t<decltype(effect.made_of)>::pairs;
+      auto const& made_of = effect.made_of;
+      constexpr unsigned kinds = std::decay_t<decltype(made_of)>::pairs;
       if constexpr (kinds == 1) {
-        meet_alike(effect, found, size, 0);
+        meet_together(effect, found, size, made_of.of_pair(0));
       } else {
         std::uint32_t ends[kinds + 1] = {};
         std::uint16_t kind_of[capacity];
         touching_pair sorted[capacity];
         for (std::uint32_t k = 0; k < size; ++k) {
-          interaction a = order.load(found[k].place), b = order.load(found[k].other);
-          kind_of[k] = static_cast<std::uint16_t>(effect.made_of.pair_of(seen(effect, a), seen(effect, b)));
+          kind_of[k] = static_cast<std::uint16_t>(
+              made_of.pair_of(items.motions[found[k].place].solid(), items.motions[found[k].other].solid()));
           ++ends[kind_of[k] + 1];
         }
         for (unsigned kind = 0; kind < kinds; ++kind) ends[kind + 1] += ends[kind];
         std::uint32_t begin = 0;
         for (std::uint32_t k = 0; k < size; ++k) sorted[ends[kind_of[k]]++] = found[k];
         for (unsigned kind = 0; kind < kinds; ++kind) {
-          meet_alike(effect, sorted + begin, ends[kind] - begin, static_cast<int>(kind));
+          meet_together(effect, sorted + begin, ends[kind] - begin, made_of.of_pair(static_cast<int>(kind)));
           begin = ends[kind];
         }
       }
     });
   }
 
-  template <class Effect>
-  static COLLIDE_HD_INLINE particle_access<Effect, interaction> seen(Effect const&, interaction& p) {
-    return particle_access<Effect, interaction>(p);
-  }
-
-  template <class Effect>
-  void meet_alike(Effect const& effect, touching_pair const* found, std::uint32_t size, int kind) const {
-    multiversioned([&, this] { meet_together(effect, found, size, effect.made_of.of_pair(kind)); });
-  }
+  static constexpr unsigned lanes = lanes_of<P>;
+  static constexpr unsigned remembered_width = unsigned(contact_values<S, remembered>::width);
+  /// Numbers of a record as they are read: it is as wide as a multiple of four if it has more than two.
+  static constexpr unsigned record_width = remembered_width > 2 ? (remembered_width + 3) / 4 * 4 : remembered_width + 1;
 
   template <class Effect, class Material>
   COLLIDE_HD_INLINE void meet_together(Effect const& effect, touching_pair const* found, std::uint32_t size,
                                        Material const& of) const {
-    constexpr unsigned lanes = lanes_of<P>;
     contact_values<S, remembered> initial;
-    S at_first[contact_values<S, remembered>::width + 1];
+    S at_first[record_width] = {};
     initial.for_each_number([&](S& x, int c, int) { at_first[c] = x; });
     for (std::uint32_t first = 0; first < size; first += lanes) {
-      std::uint32_t const last = size - 1;
       touching_pair pairs[lanes];
       S const* remembers[lanes];
       S upward[lanes], since[lanes];
-      interaction self[lanes], other[lanes];
       for (std::uint32_t l = 0; l < lanes; ++l) {
-        touching_pair const& pair = pairs[l] = found[min(first + l, last)];  // the last fill their pack
-        touching_pair const& soon = found[min(first + 3 * lanes + l, last)];
-        order.fetch(soon.other);
-        prefetch<true>(items.actions + soon.item);
-        if constexpr (remembered::size != 0) prefetch<true>(items.records + soon.item);
-        self[l] = order.load(pair.place), other[l] = order.load(pair.other);
-        if constexpr (Effects::repeats) order.space.bring_together(self[l][position{}], other[l][position{}]);
-        bool const was = (items.marks[pair.item] & items.remembers) != 0;
-        remembers[l] = was ? items.records[pair.item].numbers : at_first;
-        upward[l] = self[l].number < other[l].number ? S(-1) : S(1);
+        touching_pair const& pair = pairs[l] = found[min(first + l, size - 1)];  // the last fill their pack
+        std::uint8_t const mark = items.marks[pair.item];
+        bool const was = (mark & items.remembers) != 0;
+        remembers[l] = at_first;
+        if constexpr (remembered_width != 0) remembers[l] = was ? items.records[pair.item].numbers : at_first;
+        upward[l] = (mark & items.is_upward) != 0 ? S(1) : S(-1);
         since[l] = what != meeting::in_step && !was ? S(0) : dt;
       }
       using from = from_lanes<P>;
-      auto const a = effect.template see<P>([&](int l) { return seen(effect, self[l]); });
-      auto const b = effect.template see<P>([&](int l) { return seen(effect, other[l]); });
+      meeting_sphere<P> a, b;
+      load(pairs, a, b);
       contact_values<P, remembered> values;
-      values.for_each_number([&](P& x, int c, int) { x = from::of([&](int l) { return remembers[l][c]; }); });
+      if constexpr (remembered_width != 0) {
+        P columns[record_width];
+        load_rows(columns, [&](int l) { return remembers[l]; });
+        values.for_each_number([&](P& x, int c, int) { x = columns[c]; });
+      }
       contact_access<remembered, contact_values<P, remembered>, P> const memory(
           values, from::of([&](int l) { return since[l]; }));
-      sphere_action<P> action = effect.act(a, b, from::of([&](int l) { return upward[l]; }), of, memory);
-      for (std::uint32_t l = 0; l < lanes && first + l < size; ++l)
-        keep(pairs[l].item, action, values, static_cast<int>(l));
+      sphere_action<P> const action = effect.act(a, b, from::of([&](int l) { return upward[l]; }), of, memory);
+      keep(pairs, action, values);
     }
   }
 
-  COLLIDE_HD_INLINE void keep(std::uint32_t item, sphere_action<P>& action, contact_values<P, remembered>& values,
-                              int l) const {
-    bool const acts = lane_of_mask(action.is_there, l);
-    std::uint8_t& mark = items.marks[item];
-    if (acts) mark = static_cast<std::uint8_t>(mark | items.acts | items.meets);
-    if (acts) items.actions[item].set(action, l);
-    if (remembered::size == 0 || what != meeting::in_step) return;
-    mark = static_cast<std::uint8_t>((mark & ~items.remembers) | (acts ? items.remembers : 0));
-    if constexpr (remembered::size != 0) {
-      auto& record = items.records[item];
-      values.for_each_number([&](P& x, int c, int) { record.numbers[c] = lane(x, l); });
+  COLLIDE_HD_INLINE void load(touching_pair const (&pairs)[lanes], meeting_sphere<P>& a, meeting_sphere<P>& b) const {
+    [[maybe_unused]] packed_sphere<S> near[2][lanes];
+    if constexpr (Effects::repeats) {
+      for (unsigned l = 0; l < lanes; ++l) {
+        near[0][l] = order.spheres[pairs[l].place], near[1][l] = order.spheres[pairs[l].other];
+        vec3<S> x(near[0][l].x, near[0][l].y, near[0][l].z), y(near[1][l].x, near[1][l].y, near[1][l].z);
+        order.space.bring_together(x, y);
+        near[0][l] = {x.x(), x.y(), x.z(), near[0][l].radius}, near[1][l] = {y.x(), y.y(), y.z(), near[1][l].radius};
+      }
+    }
+    for (int second = 0; second < 2; ++second) {
+      auto const place = [&](int l) { return second == 0 ? pairs[l].place : pairs[l].other; };
+      meeting_sphere<P>& s = second == 0 ? a : b;
+      P centre[4], motion[stored_motion<S>::width];
+      load_rows(centre, [&](int l) {
+        if constexpr (Effects::repeats) return &near[second][l].x;
+        return &order.spheres[place(l)].x;
+      });
+      load_rows(motion, [&](int l) { return items.motions[place(l)].numbers; });
+      for (int k = 0; k < 3; ++k) s.position[k] = centre[k];
+      s.radius = centre[3];
+      stored_motion<S>::get(motion, s);
+    }
+  }
+
+  COLLIDE_HD_INLINE void keep(touching_pair const (&pairs)[lanes], sphere_action<P> action,
+                              contact_values<P, remembered>& values) const {
+    constexpr unsigned width = Effects::action_width;
+    P numbers[(width + 3) / 4 * 4] = {};
+    action.template for_each_number<width>([&](P& x, int n) { numbers[n] = x; });
+    store_rows<width>(numbers, [&](int l) { return items.actions[pairs[l].item].numbers; });
+    bool const in_step = what == meeting::in_step;
+    for (unsigned l = 0; l < lanes; ++l) {
+      bool const acts = lane_of_mask(action.is_there, int(l));
+      std::uint8_t& mark = items.marks[pairs[l].item];
+      unsigned const kept = in_step ? mark & unsigned(items.is_upward | items.meets) : mark;
+      unsigned const now = items.acts | items.meets | (in_step && remembered_width != 0 ? items.remembers : 0u);
+      mark = static_cast<std::uint8_t>(kept | (acts ? now : 0u));
+    }
+    if constexpr (remembered_width != 0) {
+      if (!in_step) return;
+      P columns[record_width];
+      values.for_each_number([&](P& x, int c, int) { columns[c] = x; });
+      for (unsigned c = remembered_width; c < record_width; ++c) columns[c] = 0;
+      store_rows<remembered_width>(columns, [&](int l) { return items.records[pairs[l].item].numbers; });
     }
   }
 };
@@ -206,38 +250,32 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
   /// True if all items of the particle at place i are from number `first` on.
   COLLIDE_HD_INLINE bool is_alone(std::size_t i, std::uint32_t first) const {
     bool alone = true;
-    for_each_entry(this->order, i, [&](std::uint32_t entry) { alone = alone && entry >> 1 >= first; });
+    for (std::uint32_t k = items.entry_firsts[i]; k < items.entry_firsts[i + 1]; ++k)
+      alone = alone && items.entries[k] >> 1 >= first;
     return alone;
   }
 
   COLLIDE_AS_O3 void operator()(std::size_t i) const {
     auto const& places = this->order;
-    fetch_kicks(min(i + 24, std::size_t{places.header->count} - 1), typename Effects::interaction_kicks{});
-    std::size_t const soon = min(i + 6, std::size_t{places.header->count} - 1);
-    if (places.list(0, soon) != places.overflow_mark)
-      for_each_entry(places, soon, [&](std::uint32_t entry) { prefetch(items.actions + (entry >> 1)); });
-    pair_state p(places.load(i));
-    std::uint32_t entries[64], size = 0;
+    std::size_t const last_place = std::size_t{places.header->count} - 1;
+    fetch_kicks(min(i + 24, last_place), typename Effects::interaction_kicks{});
+    pair_state p(own(i));
+    std::uint32_t const end = items.entry_firsts[i + 1], last_entry = items.entry_firsts[last_place + 1] - 1;
     this->effects.for_mutual([&](auto const& effect) {
       using effect_type = std::decay_t<decltype(effect)>;
-      auto const own = as_met(effect, p);
-      vec3<S> v = own.velocity, spin = own.spin;
-      S const impulse = this->dt / effect_type::mass_of(own);
-      auto const take = [&] {
-        for (std::uint32_t k = 0; k < size; ++k) {
-          std::uint32_t const item = entries[k] >> 1;
-          if ((items.marks[item] & items.acts) == 0) continue;
-          effect.give(v, spin, items.actions[item].on((entries[k] & 1) != 0), own.radius, impulse);
-        }
-        p.met = p.met || size != 0;
-        size = 0;
-      };
-      for_each_entry(places, i, [&](std::uint32_t entry) {
-        entries[size] = entry;
-        size += (items.marks[entry >> 1] & items.meets) != 0;
-        if (size == 64) take();
-      });
-      take();
+      meeting_sphere<S> self;
+      stored_motion<S>::get(items.motions[i].numbers, self);
+      self.radius = places.spheres[i].radius;
+      vec3<S> v = self.velocity, spin = self.spin;
+      S const impulse = this->dt / effect_type::mass_of(self);
+      for (std::uint32_t k = items.entry_firsts[i]; k < end; ++k) {
+        std::uint32_t const entry = items.entries[k], item = entry >> 1;
+        prefetch(items.actions + (items.entries[min(k + 48, last_entry)] >> 1));
+        std::uint8_t const mark = items.marks[item];
+        p.met = p.met || (mark & items.meets) != 0;
+        if ((mark & items.acts) == 0) continue;
+        effect.give(v, spin, items.actions[item].on((entry & 1) != 0), self.radius, impulse);
+      }
       p.changed[velocity{}] = v;
       if constexpr (effect_type::turns) p.changed[angular_velocity{}] = spin;
     });
@@ -250,9 +288,14 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
   using interaction = typename base::interaction;
   using pair_state = typename base::pair_state;
 
-  template <class Effect>
-  static COLLIDE_HD_INLINE meeting_sphere<S> as_met(Effect const& effect, pair_state& p) {
-    return effect.template see<S>([&](int) { return particle_access<Effect, interaction>(p.self); });
+  /// A particle, as far as `store` asks.
+  COLLIDE_HD_INLINE interaction own(std::size_t i) const {
+    interaction p = this->order.load(i);
+    S const* const numbers = items.motions[i].numbers;
+    p[velocity{}] = vec3<S>(numbers[0], numbers[1], numbers[2]);
+    if constexpr (contains<typename interaction::list, angular_velocity>)
+      p[angular_velocity{}] = vec3<S>(numbers[4], numbers[5], numbers[6]);
+    return p;
   }
 
   /// Asks for memory that is written soon.
@@ -285,12 +328,16 @@ class pair_actions {
     }
     actions_.reserve(resource, usual * n);
     place_before_.reserve(resource, n);
+    motions_.reserve(resource, n);
+    entry_firsts_.reserve(resource, n + 1);
+    entries_.reserve(resource, 2 * usual * n);
   }
   /// There are no contacts.
   void clear() { was_saved_ = has_before_ = false; }
 
   pair_items<S, Effects> items() const {
-    return {now_.firsts.data(), now_.others.data(), now_.marks.data(), now_.records.data(), actions_.data()};
+    return {now_.firsts.data(),  now_.others.data(), now_.marks.data(),    now_.records.data(),
+            actions_.data(),     motions_.data(),    entry_firsts_.data(), entries_.data()};
   }
 
   /// Before places change: keeps what contacts remember.
@@ -306,18 +353,19 @@ class pair_actions {
   template <class Space>
   void build(Space const& space, order const& o) {
     std::size_t const count = o.header->count;
-    std::uint32_t* const firsts = now_.firsts.data();
+    std::uint32_t *const firsts = now_.firsts.data(), *const entry_firsts = entry_firsts_.data();
     space.for_each(count, [&](std::size_t i) {
-      std::uint32_t behind = 0;
-      for_each_place(o, i, [&](std::uint32_t& place) { behind += place > i; });
-      firsts[i] = behind;
+      std::uint32_t behind = 0, all = 0;
+      for_each_place(o, i, [&](std::uint32_t place) { behind += place > i, ++all; });
+      firsts[i] = behind, entry_firsts[i] = all;
     });
-    firsts[count] = 0;
+    firsts[count] = entry_firsts[count] = 0;
     exclusive_scan(space, firsts, count + 1);
+    exclusive_scan(space, entry_firsts, count + 1);
     ensure_capacity(space, firsts[count]);
     space.for_each(count, [&](std::size_t i) {
       std::uint32_t item = firsts[i];
-      for_each_place(o, i, [&](std::uint32_t& place) {
+      for_each_place(o, i, [&](std::uint32_t place) {
         if (place <= i) return;
         now_.others.data()[item] = place;
         restore(o, static_cast<std::uint32_t>(i), place, item);
@@ -325,12 +373,10 @@ class pair_actions {
       });
     });
     space.for_each(count, [&](std::size_t i) {
-      std::uint32_t item = firsts[i], size = 0;
-      for_each_place(o, i, [&](std::uint32_t& place) {
-        ++size;
-        place = place > i ? 2 * item++ : 2 * now_.find(place, static_cast<std::uint32_t>(i)) + 1;
+      std::uint32_t item = firsts[i], *entry = entries_.data() + entry_firsts[i];
+      for_each_place(o, i, [&](std::uint32_t place) {
+        *entry++ = place > i ? 2 * item++ : 2 * now_.find(place, static_cast<std::uint32_t>(i)) + 1;
       });
-      if (size < order::listed && o.list(0, i) != order::overflow_mark) o.list(size, i) = no_entry;
     });
     was_saved_ = has_before_ = false;
   }
@@ -414,7 +460,10 @@ class pair_actions {
     before_.firsts.data()[saved_] = item;
   }
 
-  std::size_t bytes() const { return now_.bytes() + before_.bytes() + place_before_.bytes() + actions_.bytes(); }
+  std::size_t bytes() const { 
+    return now_.bytes() + before_.bytes() + place_before_.bytes() + actions_.bytes() + motions_.bytes() +
+           entry_firsts_.bytes() + entries_.bytes();
+  }
 
  private:
   struct kept {
@@ -459,13 +508,14 @@ class pair_actions {
   }
 
   void restore(order const& o, std::uint32_t i, std::uint32_t j, std::uint32_t item) {
-    now_.marks.data()[item] = 0;
+    std::uint8_t& mark = now_.marks.data()[item];
+    mark = o.number_at(i) > o.number_at(j) ? pair_items<S, Effects>::is_upward : 0;
     if (!has_memory || !has_before_ || o.is_new(i) || o.is_new(j)) return;
     std::uint32_t const a = place_before_.data()[o.numbers[i]], b = place_before_.data()[o.numbers[j]];
     if (a == none || b == none) return;
     std::uint32_t const from = before_.find(min(a, b), max(a, b));
     if (from == none || (before_.marks.data()[from] & 1) == 0) return;
-    now_.marks.data()[item] = 1;
+    mark |= pair_items<S, Effects>::remembers;
     now_.records.data()[item] = seen_from(a > b, before_.records.data()[from]);
   }
 
@@ -474,11 +524,14 @@ class pair_actions {
     std::size_t const capacity = n + n / 8 + 64;
     if (now_.others.capacity() < n) now_.reserve(space.resource(), capacity);
     if (actions_.capacity() < n) actions_.reserve(space.resource(), capacity);
+    if (entries_.capacity() < 2 * n) entries_.reserve(space.resource(), 2 * capacity);
   }
 
   kept now_, before_;
   buffer<std::uint32_t> place_before_;  ///< by numbers
   buffer<typename pair_items<S, Effects>::action> actions_;
+  buffer<stored_motion<S>> motions_;  ///< by places
+  buffer<std::uint32_t> entry_firsts_, entries_;
   bool has_before_ = false, was_saved_ = false;
   std::size_t saved_ = 0;  ///< particles of which contacts were saved
 };

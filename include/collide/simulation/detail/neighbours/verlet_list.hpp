@@ -228,6 +228,7 @@ class verlet_list {
     order const o = order_of(state);
     std::size_t const n = state.size;
     if constexpr (Once) {
+      space.for_each(n, store_motions<S, Scene>{state, o, pairs_.items().motions, effects});
       pairs_.interact(space, meet_once<S, Scene>{o, pairs_.items(), effects, dt, what},
                       sum_actions<S, Scene>{{state, o, Effects(effects), dt, what}, pairs_.items()});
       o.header->rebuild = 0;  // not read again in this step
