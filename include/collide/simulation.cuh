@@ -143,9 +143,11 @@ class simulation {
     if constexpr (effects_type::any_pair_contact) neighbours_.reserve(space_, particles);
     if constexpr (effects_type::overlaps) {
       surfaces_.reserve(resource, particles);
+      if constexpr (knows_near_mesh) near_mesh_.reserve(resource, particles);
+      is_near_mesh_known_ = false;
       pressing_.reserve(resource, particles);
-      pressing_counts_.reserve(resource, 3);
-      space_.fill(pressing_counts_.data(), 0, 3 * sizeof(std::uint32_t));
+      pressing_counts_.reserve(resource, 4);
+      space_.fill(pressing_counts_.data(), 0, 4 * sizeof(std::uint32_t));
       if constexpr (!execution_space::host_accessible)
         overlaps_.reserve(resource, detail::max(particles, detail::overlap_pool::min_items));
     }
@@ -161,7 +163,7 @@ class simulation {
     bodies_.check(bodies, mesh.size(), velocities);
     (detail::check_walls_of<Effect>(effects_, space_, mesh.size(), bodies.size()), ...);
     mesh_ = {};
-    has_mesh_ = false;
+    has_mesh_ = is_near_mesh_known_ = false;
     detail::lookup_space<execution_space> there(space_);
     if (mesh.size() != 0) detail::build_index(index_, there, options_, mesh);
     bodies_.build(space_, mesh, bodies, velocities);
@@ -214,7 +216,7 @@ class simulation {
   std::size_t bytes() const {
     std::size_t lists = 0;
     if constexpr (effects_type::any_pair_contact) lists = neighbours_.bytes();
-    if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes() + overlaps_.bytes();
+    if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + near_mesh_.bytes() + pressing_.bytes() + overlaps_.bytes();
     return memory_.bytes() + device_time_.bytes() + was_there_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
 
@@ -346,6 +348,8 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   /// True if each pair is evaluated once: where a thread is alone in its block, as on a CPU.
   static constexpr bool meets_once = effects_type::meets_once && detail::works_alone<execution_space>;
+  /// True if lists of neighbours tell how long particles that are far from the mesh are.
+  static constexpr bool knows_near_mesh = meets_once && effects_type::overlaps && !has_bodies && !effects_type::repeats;
   using neighbour_lists = std::conditional_t<effects_type::any_pair_contact,
                                              detail::verlet_list<S, effects_type, meets_once>, detail::absent>;
   using surface_memory =
@@ -460,13 +464,35 @@ class simulation {
       using memory_type = std::decay_t<decltype(memory)>;
       detail::pressing_list const pressing{pressing_counts_.data(), pressing_.data()};
       clear_overlap_pool();
-      space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
-                                       state_, effects_, triangles, memory, pressing, what});
+      auto const list = [&](std::size_t n, detail::pressing_list const& to, id const* among, S margin) {
+        space_.for_each(n, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
+                               state_, effects_, triangles, memory, to, what, among, margin});
+      };
+      std::size_t const asked = list_near_mesh(what, list);
+      list(asked, pressing, asked < state_.size ? near_mesh_.data() : nullptr, S(0));
       std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
       space_.for_each(detail::max(state_.size, threads),
                       detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
                           state_, effects_, triangles, memory, pressing, overlap_pool(), dt, what, threads});
     }
+  }
+  /// Lists the particles that may press on the mesh before lists of neighbours are made anew, if that can be known: it
+  /// is at rest, and nothing has moved by more than their skin until then. Returns how many there are, or all.
+  template <class List>
+  std::size_t list_near_mesh([[maybe_unused]] detail::meeting what, [[maybe_unused]] List const& list) {
+    if constexpr (knows_near_mesh) {
+      if (neighbours_.are_new()) is_near_mesh_known_ = false;
+      if (what == detail::meeting::in_step) {
+        std::uint32_t& count = pressing_counts_.data()[3];
+        if (!is_near_mesh_known_) {
+          count = 0;
+          list(state_.size, {&count, near_mesh_.data()}, nullptr, neighbours_.skin());
+        }
+        is_near_mesh_known_ = true;
+        return count;
+      }
+    }
+    return state_.size;
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.
   void meet_inside(state_type const& with_copies, S dt) {
@@ -692,8 +718,10 @@ class simulation {
   neighbour_lists neighbours_;
   surface_memory surfaces_;
   buffer<id> overflow_;
+  buffer<id> near_mesh_;  ///< particles that may press on the mesh before lists of neighbours are made anew
+  bool is_near_mesh_known_ = false;
   buffer<id> pressing_;                    ///< particles that may press on the mesh, and how many they are
-  buffer<std::uint32_t> pressing_counts_;  ///< of those, of used `overlaps_`, and whether they were too few
+  buffer<std::uint32_t> pressing_counts_;  ///< of those, of used `overlaps_`, whether they were too few; of `near_mesh_`
   buffer<detail::overlap_item> overlaps_;  ///< of a device, for particles that overlap many triangles
   bodies_memory bodies_;
 };

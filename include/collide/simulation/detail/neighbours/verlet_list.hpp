@@ -173,6 +173,7 @@ class verlet_list {
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
+    if constexpr (Once) are_new_ = *rebuild != 0;
     if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
     if constexpr (Once) {
       if (*rebuild != 0) pairs_.keep(o);
@@ -194,6 +195,9 @@ class verlet_list {
       if (*rebuild != 0) pairs_.build(space, order_of(state));
     }
   }
+
+  /// True if the last `renew` has made the lists anew; where particles meet once a pair.
+  bool are_new() const { return are_new_; }
 
   /// True if there was no room for what some contact remembers. Waits.
   template <class Space>
@@ -364,7 +368,7 @@ class verlet_list {
   small_cells<S> small_{};
   S skin_{};
   std::size_t blocks_ = 0, listed_ = 0;  ///< how many particles have lists
-  bool are_complete_ = false;            ///< for particles where they are: `check` has just found that
+  bool are_new_ = false, are_complete_ = false;  ///< for particles where they are: `check` has just found that
   buffer<state_of_lists> header_;
   std::size_t at_border_ = 0;         ///< particles that copies of other ranks' may meet, while lists are complete
   bool inside_is_done_ = false;       ///< all others have met

@@ -107,8 +107,8 @@ struct pressing_list {
   id* numbers;
 };
 
-/// Kernel functor of `for_each` over particles: lists those that meet the box of a triangle. These are few, and much
-/// work.
+/// Kernel functor of `for_each` over particles, or over `among` some: lists those that meet the box of a triangle, or
+/// are less than `margin` away from it. These are few, and much work.
 template <class S, class Effects, class Triangles, class Memory>
 struct list_pressing {
   particle_state<S, typename Effects::all> state;
@@ -117,8 +117,11 @@ struct list_pressing {
   Memory memory;
   pressing_list found;
   meeting what;
+  id const* among;  ///< null: all
+  S margin;
 
-  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const {
+    std::size_t const i = among != nullptr ? among[k] : k;
     if (what == meeting::of_woken && !(is_just_woken(state, i) && has_no_mesh_kicks(state, i))) return;
     forget_mesh_kicks(state, i);
     if constexpr (Effects::any_inactive) {
@@ -128,7 +131,7 @@ struct list_pressing {
     }
     particle<S, union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>> p;
     state.load(p, i);
-    sphere<S> const shape{p[position{}], reach_of<Effects>(p.the_radius)};
+    sphere<S> const shape{p[position{}], reach_of<Effects>(p.the_radius) + margin};
     if (is_finite(shape.centre) && may_press(shape)) {
       found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
     } else if constexpr (Effects::remembered::size != 0) {
