@@ -630,7 +630,8 @@ class simulation {
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_space<execution_space> there(space_);
       S const margin = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.margin());
-      S const reached = detail::reach_of<effects_type>(detail::max(radii_.largest, min_radius_)) + margin;
+      S reached = detail::reach_of<effects_type>(detail::max(radii_.largest, min_radius_)) + margin;
+      if constexpr (knows_near_mesh) reached += neighbours_.skin();
       bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < reached);
       detail::prepare_index(index_, there, options_,
                             wider ? spheres_xyz(state_.at(position{}), n, reached) : spheres());

@@ -112,7 +112,7 @@ struct granular_contact {
                                     detail::is_mutual_law<Rolling> && detail::is_mutual_law<Cohesion>;
 
   /// Numbers that are kept of what two spheres do to each other.
-  static constexpr unsigned action_width = !turns ? 3 : std::is_same<Rolling, none>::value ? 7 : 10;
+  static constexpr unsigned action_width = !turns ? 4 : std::is_same<Rolling, none>::value ? 7 : 10;
 
   /// One of two spheres, or one each of some pairs; seen(k) is that of pair k.
   template <class P, class F>
@@ -148,13 +148,13 @@ struct granular_contact {
     action.is_there = goes_on;
     return action;
   }
-  /// Adds an action to a particle's velocity and spin; `impulse` is the time over its mass.
-  template <class S>
-  COLLIDE_HD_INLINE void give(vec3<S>& v, [[maybe_unused]] vec3<S>& spin, detail::sphere_action<S> const& by,
-                              [[maybe_unused]] S radius, S impulse) const {
+  /// Adds an action to a particle's velocity and spin, vectors or rows of numbers; `impulse` is the time over its mass.
+  template <class V, class Action, class S>
+  COLLIDE_HD_INLINE void give(V& v, [[maybe_unused]] V& spin, Action const& by, [[maybe_unused]] S radius,
+                              S impulse) const {
     if constexpr (turns) {
       S const arm = radius - S(arm_shortening) * by.overlap;
-      vec3<S> const torque = by.twist * arm + by.torque;
+      V const torque = by.twist * arm + by.torque;
       spin += torque * (S(2.5) * impulse / (radius * radius));
     }
     v += by.force * impulse;

@@ -197,7 +197,7 @@ struct particle_state<S, columns<C...>>
 
   /// The columns `E` of one particle.
   template <class P, class... E>
-  COLLIDE_HD_INLINE void load(P& p, std::size_t i, columns<E...>) const {
+  COLLIDE_HD_INLINE void load(P& p, [[maybe_unused]] std::size_t i, columns<E...>) const {
     (load_value(E{}, p[E{}], i), ...);
   }
 

@@ -22,15 +22,15 @@ struct sphere_action {
   P overlap;
   mask_of<P> is_there;  ///< the two do anything to each other
 
-  /// f(number, k) for the first `Width` numbers, number k: 3 without torques, 7 without the other torque, or 10.
+  /// f(number, k) for the first `Width` numbers, number k: 4 without torques, 7 without the other torque, or 10.
   template <unsigned Width, class F>
   COLLIDE_HD_INLINE void for_each_number(F const& f) {
-    for (int k = 0; k < 3; ++k) {
+    for (unsigned k = 0; k < 3; ++k) {
       f(force[k], k);
-      if (Width > 3) f(twist[k], 3 + k);
+      if (Width > 4) f(twist[k], 4 + k);
       if (Width > 7) f(torque[k], 7 + k);
     }
-    if (Width > 3) f(overlap, 6);
+    f(overlap, 3u);
   }
 };
 
@@ -52,19 +52,24 @@ struct alignas(8 * sizeof(S)) stored_motion {
   }
 };
 
+/// An action on one of two spheres as it is read: vectors are rows of four numbers.
+template <class S>
+struct read_action {
+  row_of<S> force, twist, torque;
+  S overlap;
+};
+
 /// An action in memory.
 template <class S, unsigned Width>
 struct alignas(Width == 7 ? 8 * sizeof(S) : sizeof(S)) stored_action {
   S numbers[Width];
 
-  /// As it acts on the first or the `second` of the two. Of what is 0 the sign stays.
-  COLLIDE_HD_INLINE sphere_action<S> on(bool second) const {
-    sphere_action<S> action;
-    action.torque = vec3<S>(S(0), S(0), S(0));
-    action.template for_each_number<Width>([&](S& x, int n) {
-      bool const turns_round = second && (n < 3 || n > 6);
-      x = select(turns_round, S(0 - numbers[n]), numbers[n]);
-    });
+  /// As it acts on the first or the `second` of the two. Of what is 0 the sign stays. Up to a number behind is read.
+  COLLIDE_HD_INLINE read_action<S> on(bool second) const {
+    constexpr S zero[4] = {};
+    read_action<S> action{opposite_if(second, load_row(numbers)), load_row(zero), load_row(zero), numbers[3]};
+    if constexpr (Width > 4) action.twist = load_row(numbers + 4);
+    if constexpr (Width > 7) action.torque = opposite_if(second, load_row(numbers + 7));
     return action;
   }
 };

@@ -190,14 +190,55 @@ COLLIDE_HD_INLINE void transpose(pack<double, 4>& a, pack<double, 4>& b, pack<do
   c.v = COLLIDE_SHUFFLE(ab, cd, 2, 3, 6, 7), d.v = COLLIDE_SHUFFLE(ab_odd, cd_odd, 2, 3, 6, 7);
 #undef COLLIDE_SHUFFLE
 }
-/// Four numbers in memory.
-typedef double four_in_memory __attribute__((vector_size(32), aligned(8), may_alias));
-typedef double two_in_memory __attribute__((vector_size(16), aligned(8), may_alias));
+/// `N` numbers in memory.
+template <class T, int N>
+struct numbers_in_memory {
+  typedef T vector __attribute__((vector_size(N * sizeof(T)), aligned(sizeof(T)), may_alias));
+};
+/// A vector, and a fourth number.
+template <class S>
+using row_of = pack<S, 4>;
+/// Four numbers in memory, and some of them.
+template <class S>
+COLLIDE_HD_INLINE pack<S, 4> load_row(S const* from) {
+  return pack<S, 4>(typename pack<S, 4>::vector(*reinterpret_cast<typename numbers_in_memory<S, 4>::vector const*>(from)));
+}
+template <unsigned Used, class S>
+COLLIDE_HD_INLINE void store_row(S* to, pack<S, 4> const& row) {
+  if constexpr (Used >= 4) {
+    *reinterpret_cast<typename numbers_in_memory<S, 4>::vector*>(to) = row.v;
+  } else {
+    for (unsigned k = 0; k < Used; ++k) to[k] = row.v[k];
+  }
+}
+template <class S>
+COLLIDE_HD_INLINE vec3<S> vector_of(pack<S, 4> const& row) {
+  return {row.v[0], row.v[1], row.v[2]};
+}
+/// 0 - x, if so.
+template <class S>
+COLLIDE_HD_INLINE pack<S, 4> opposite_if(bool so, pack<S, 4> const& x) {
+  return either(mask<S, 4>(so), 0 - x, x);
+}
 
 #else
 
 template <class S>
 using pack_of = S;
+template <class S>
+using row_of = vec3<S>;
+template <class S>
+COLLIDE_HD_INLINE vec3<S> load_row(S const* from) {
+  return {from[0], from[1], from[2]};
+}
+template <class S>
+COLLIDE_HD_INLINE vec3<S> vector_of(vec3<S> const& row) {
+  return row;
+}
+template <class S>
+COLLIDE_HD_INLINE vec3<S> opposite_if(bool so, vec3<S> const& x) {
+  return so ? vec3<S>(0 - x.x(), 0 - x.y(), 0 - x.z()) : x;
+}
 
 #endif
 
@@ -206,13 +247,10 @@ template <unsigned Width, class P, class F>
 COLLIDE_HD_INLINE void load_rows(P (&columns)[Width], F const& row) {
 #if defined(__GNUC__) && !defined(__CUDACC__)
   if constexpr (std::is_same<P, pack<double, 4>>::value && Width % 4 == 0) {
-    auto const four = [](double const* from) COLLIDE_HOT {
-      return P(typename P::vector(*reinterpret_cast<four_in_memory const*>(from)));
-    };
     auto const *const a = row(0), *const b = row(1), *const c = row(2), *const d = row(3);
     COLLIDE_UNROLL
     for (unsigned k = 0; k < Width; k += 4) {
-      P w = four(a + k), x = four(b + k), y = four(c + k), z = four(d + k);
+      P w = load_row(a + k), x = load_row(b + k), y = load_row(c + k), z = load_row(d + k);
       transpose(w, x, y, z);
       columns[k] = w, columns[k + 1] = x, columns[k + 2] = y, columns[k + 3] = z;
     }
@@ -221,6 +259,16 @@ COLLIDE_HD_INLINE void load_rows(P (&columns)[Width], F const& row) {
 #endif
   for (unsigned c = 0; c < Width; ++c) columns[c] = from_lanes<P>::of([&](int k) { return row(k)[c]; });
 }
+#if defined(__GNUC__) && !defined(__CUDACC__)
+template <unsigned First, unsigned Used, unsigned Width, class S>
+COLLIDE_HD_INLINE void store_rows_from(pack<S, 4> const (&columns)[Width], S* a, S* b, S* c, S* d) {
+  pack<S, 4> w = columns[First], x = columns[First + 1], y = columns[First + 2], z = columns[First + 3];
+  transpose(w, x, y, z);
+  store_row<Used - First>(a + First, w), store_row<Used - First>(b + First, x);
+  store_row<Used - First>(c + First, y), store_row<Used - First>(d + First, z);
+  if constexpr (First + 4 < Used) store_rows_from<First + 4, Used>(columns, a, b, c, d);
+}
+#endif
 /// Writes the first `Used` numbers of such rows.
 template <unsigned Used, unsigned Width, class P, class F>
 COLLIDE_HD_INLINE void store_rows(P const (&columns)[Width], F const& row) {
@@ -228,20 +276,7 @@ COLLIDE_HD_INLINE void store_rows(P const (&columns)[Width], F const& row) {
 #if defined(__GNUC__) && !defined(__CUDACC__)
   if constexpr (std::is_same<P, pack<double, 4>>::value && Width % 4 == 0) {
     auto *const a = row(0), *const b = row(1), *const c = row(2), *const d = row(3);
-    COLLIDE_UNROLL
-    for (unsigned k = 0; k < Used; k += 4) {
-      P w = columns[k], x = columns[k + 1], y = columns[k + 2], z = columns[k + 3];
-      transpose(w, x, y, z);
-      auto const put = [left = Used - k](double* to, P const& from) COLLIDE_HOT {
-        if (left >= 4) {
-          *reinterpret_cast<four_in_memory*>(to) = from.v;
-          return;
-        }
-        if (left >= 2) *reinterpret_cast<two_in_memory*>(to) = two_in_memory{from.v[0], from.v[1]};
-        if (left % 2 == 1) to[left - 1] = from.v[left - 1];
-      };
-      put(a + k, w), put(b + k, x), put(c + k, y), put(d + k, z);
-    }
+    store_rows_from<0, Used>(columns, a, b, c, d);
     return;
   }
 #endif

@@ -222,7 +222,7 @@ struct meet_once {
                               contact_values<P, remembered>& values) const {
     constexpr unsigned width = Effects::action_width;
     P numbers[(width + 3) / 4 * 4] = {};
-    action.template for_each_number<width>([&](P& x, int n) { numbers[n] = x; });
+    action.template for_each_number<width>([&](P& x, unsigned n) { numbers[n] = x; });
     store_rows<width>(numbers, [&](int l) { return items.actions[pairs[l].item].numbers; });
     bool const in_step = what == meeting::in_step;
     for (unsigned l = 0; l < lanes; ++l) {
@@ -261,24 +261,33 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
     fetch_kicks(min(i + 24, last_place), typename Effects::interaction_kicks{});
     pair_state p(own(i));
     std::uint32_t const end = items.entry_firsts[i + 1], last_entry = items.entry_firsts[last_place + 1] - 1;
+    std::uint32_t acting[64], size = 0;
+    std::uint8_t marks = 0;
     this->effects.for_mutual([&](auto const& effect) {
       using effect_type = std::decay_t<decltype(effect)>;
+      S const* const motion = items.motions[i].numbers;
+      row_of<S> v = load_row(motion), spin = load_row(motion + 4);
       meeting_sphere<S> self;
-      stored_motion<S>::get(items.motions[i].numbers, self);
-      self.radius = places.spheres[i].radius;
-      vec3<S> v = self.velocity, spin = self.spin;
+      self.radius = places.spheres[i].radius, self.density = motion[3];
       S const impulse = this->dt / effect_type::mass_of(self);
+      auto const take = [&] {
+        for (std::uint32_t k = 0; k < size; ++k)
+          effect.give(v, spin, items.actions[acting[k] >> 1].on((acting[k] & 1) != 0), self.radius, impulse);
+        size = 0;
+      };
       for (std::uint32_t k = items.entry_firsts[i]; k < end; ++k) {
-        std::uint32_t const entry = items.entries[k], item = entry >> 1;
         prefetch(items.actions + (items.entries[min(k + 48, last_entry)] >> 1));
-        std::uint8_t const mark = items.marks[item];
-        p.met = p.met || (mark & items.meets) != 0;
-        if ((mark & items.acts) == 0) continue;
-        effect.give(v, spin, items.actions[item].on((entry & 1) != 0), self.radius, impulse);
+        acting[size] = items.entries[k];
+        std::uint8_t const mark = items.marks[acting[size] >> 1];
+        marks |= mark;
+        size += (mark & items.acts) != 0;
+        if (size == 64) take();
       }
-      p.changed[velocity{}] = v;
-      if constexpr (effect_type::turns) p.changed[angular_velocity{}] = spin;
+      take();
+      p.changed[velocity{}] = vector_of(v);
+      if constexpr (effect_type::turns) p.changed[angular_velocity{}] = vector_of(spin);
     });
+    p.met = (marks & items.meets) != 0;
     if (p.met) mark_contact(p.changed);
     this->store(p);
   }
@@ -326,7 +335,7 @@ class pair_actions {
       k->firsts.reserve(resource, n + 1);
       k->reserve(resource, usual * n);
     }
-    actions_.reserve(resource, usual * n);
+    actions_.reserve(resource, usual * n + 1);  // one that is read, but not used
     place_before_.reserve(resource, n);
     motions_.reserve(resource, n);
     entry_firsts_.reserve(resource, n + 1);
@@ -396,8 +405,10 @@ class pair_actions {
       for (std::size_t first = part * share; first < end; first += places) {
         std::size_t const last = std::min(first + places, end);
         meet(first, last);
-        for (std::size_t i = first; i < last; ++i)
-          if (is_alone(i)) sum(i);
+        multiversioned([&] {
+          for (std::size_t i = first; i < last; ++i)
+            if (is_alone(i)) sum(i);
+        });
       }
     });
     if (parts == 1) return;
