@@ -143,11 +143,10 @@ class simulation {
     if constexpr (effects_type::any_pair_contact) neighbours_.reserve(space_, particles);
     if constexpr (effects_type::overlaps) {
       surfaces_.reserve(resource, particles);
-      if constexpr (knows_near_mesh) near_mesh_.reserve(resource, particles);
-      is_near_mesh_known_ = false;
+      is_pressing_known_ = false;
       pressing_.reserve(resource, particles);
-      pressing_counts_.reserve(resource, 4);
-      space_.fill(pressing_counts_.data(), 0, 4 * sizeof(std::uint32_t));
+      pressing_counts_.reserve(resource, 3);
+      space_.fill(pressing_counts_.data(), 0, 3 * sizeof(std::uint32_t));
       if constexpr (!execution_space::host_accessible)
         overlaps_.reserve(resource, detail::max(particles, detail::overlap_pool::min_items));
     }
@@ -163,7 +162,7 @@ class simulation {
     bodies_.check(bodies, mesh.size(), velocities);
     (detail::check_walls_of<Effect>(effects_, space_, mesh.size(), bodies.size()), ...);
     mesh_ = {};
-    has_mesh_ = is_near_mesh_known_ = false;
+    has_mesh_ = is_pressing_known_ = false;
     detail::lookup_space<execution_space> there(space_);
     if (mesh.size() != 0) detail::build_index(index_, there, options_, mesh);
     bodies_.build(space_, mesh, bodies, velocities);
@@ -216,7 +215,7 @@ class simulation {
   std::size_t bytes() const {
     std::size_t lists = 0;
     if constexpr (effects_type::any_pair_contact) lists = neighbours_.bytes();
-    if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + near_mesh_.bytes() + pressing_.bytes() + overlaps_.bytes();
+    if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes() + overlaps_.bytes();
     return memory_.bytes() + device_time_.bytes() + was_there_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
 
@@ -451,6 +450,7 @@ class simulation {
       if (!keeps_kicks && !neighbours_.inside_is_done()) forget_pair_kicks();
       if (!keeps_kicks || !effects_type::keeps_support) {
         neighbours_.renew(space_, with_copies, effects_.space());
+        if constexpr (knows_near_mesh) is_pressing_known_ = is_pressing_known_ && !neighbours_.are_new();
         settle_births(with_copies, dt);
         neighbours_.interact(space_, with_copies, effects_, dt, what);
       }
@@ -463,36 +463,20 @@ class simulation {
       using mesh_type = std::decay_t<decltype(triangles)>;
       using memory_type = std::decay_t<decltype(memory)>;
       detail::pressing_list const pressing{pressing_counts_.data(), pressing_.data()};
-      clear_overlap_pool();
-      auto const list = [&](std::size_t n, detail::pressing_list const& to, id const* among, S margin) {
-        space_.for_each(n, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
-                               state_, effects_, triangles, memory, to, what, among, margin});
-      };
-      std::size_t const asked = list_near_mesh(what, list);
-      list(asked, pressing, asked < state_.size ? near_mesh_.data() : nullptr, S(0));
+      bool const stays_listed = knows_near_mesh && what == detail::meeting::in_step;
+      if (!stays_listed || !is_pressing_known_) {
+        space_.fill(pressing.count, 0, 2 * sizeof(std::uint32_t));  // and the pool is empty
+        S margin = 0;
+        if constexpr (knows_near_mesh) margin = stays_listed ? neighbours_.skin() : S(0);
+        space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
+                                         state_, effects_, triangles, memory, pressing, what, margin});
+      }
+      is_pressing_known_ = stays_listed;
       std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
-      space_.for_each(detail::max(state_.size, threads),
+      space_.for_each(execution_space::host_accessible ? *pressing.count : detail::max(state_.size, threads),
                       detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
                           state_, effects_, triangles, memory, pressing, overlap_pool(), dt, what, threads});
     }
-  }
-  /// Lists the particles that may press on the mesh before lists of neighbours are made anew, if that can be known: it
-  /// is at rest, and nothing has moved by more than their skin until then. Returns how many there are, or all.
-  template <class List>
-  std::size_t list_near_mesh([[maybe_unused]] detail::meeting what, [[maybe_unused]] List const& list) {
-    if constexpr (knows_near_mesh) {
-      if (neighbours_.are_new()) is_near_mesh_known_ = false;
-      if (what == detail::meeting::in_step) {
-        std::uint32_t& count = pressing_counts_.data()[3];
-        if (!is_near_mesh_known_) {
-          count = 0;
-          list(state_.size, {&count, near_mesh_.data()}, nullptr, neighbours_.skin());
-        }
-        is_near_mesh_known_ = true;
-        return count;
-      }
-    }
-    return state_.size;
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.
   void meet_inside(state_type const& with_copies, S dt) {
@@ -503,8 +487,7 @@ class simulation {
     return {overlaps_.data(), static_cast<std::uint32_t>(overlaps_.capacity()), pressing_counts_.data() + 1,
             pressing_counts_.data() + 2};
   }
-  /// Empties the pool, and the list of those that press on the mesh.
-  void clear_overlap_pool() const { space_.fill(pressing_counts_.data(), 0, 2 * sizeof(std::uint32_t)); }
+  void clear_overlap_pool() const { space_.fill(pressing_counts_.data() + 1, 0, sizeof(std::uint32_t)); }
   /// Says which of those that a source has made overlap others, once the lists are renewed.
   void settle_births([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
     if constexpr (effects_type::makes) {
@@ -719,10 +702,9 @@ class simulation {
   neighbour_lists neighbours_;
   surface_memory surfaces_;
   buffer<id> overflow_;
-  buffer<id> near_mesh_;  ///< particles that may press on the mesh before lists of neighbours are made anew
-  bool is_near_mesh_known_ = false;
   buffer<id> pressing_;                    ///< particles that may press on the mesh, and how many they are
-  buffer<std::uint32_t> pressing_counts_;  ///< of those, of used `overlaps_`, whether they were too few; of `near_mesh_`
+  buffer<std::uint32_t> pressing_counts_;  ///< of those, of used `overlaps_`, and whether they were too few
+  bool is_pressing_known_ = false;  ///< `pressing_` are all that may press on the mesh with these lists of neighbours
   buffer<detail::overlap_item> overlaps_;  ///< of a device, for particles that overlap many triangles
   bodies_memory bodies_;
 };

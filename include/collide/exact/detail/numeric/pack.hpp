@@ -45,7 +45,8 @@ struct from_lanes {
     return f(0);
   }
 };
-COLLIDE_HD_INLINE bool lane_of_mask(bool mask, int) { return mask; }
+/// All bits are set where the condition of a lane holds, else none.
+COLLIDE_HD_INLINE unsigned bits_of_lane(bool mask, int) { return 0u - unsigned(mask); }
 
 #if defined(__GNUC__) && !defined(__CUDACC__)
 
@@ -122,8 +123,8 @@ struct from_lanes<pack<T, N>> {
   }
 };
 template <class T, int N>
-COLLIDE_HD_INLINE bool lane_of_mask(mask<T, N> const& m, int k) {
-  return m.v[k] != 0;
+COLLIDE_HD_INLINE unsigned bits_of_lane(mask<T, N> const& m, int k) {
+  return static_cast<unsigned>(m.v[k]);
 }
 
 template <class T, int N>

@@ -33,6 +33,11 @@ struct without_memory : Effects {
   explicit without_memory(Effects const& e) : Effects(e) {}
 };
 
+/// The places of two particles on each other's list, the first of which comes first.
+struct listed_pair {
+  std::uint32_t place, other;
+};
+
 /// The contacts of lists of neighbours: those of the particle at place i with others behind it are
 /// firsts[i] .. firsts[i + 1].
 template <class S, class Effects>
@@ -43,7 +48,7 @@ struct pair_items {
   static constexpr std::uint8_t remembers = 1, acts = 2, meets = 4, is_upward = 8;
 
   std::uint32_t* firsts;
-  std::uint32_t* others;  ///< places
+  listed_pair* pairs;
   std::uint8_t* marks;    ///< of these: `remembers` something, `acts` in this step, and any is seen as in contact;
                           ///< `is_upward`: the first of the two has the larger number
   record* records;
@@ -96,84 +101,93 @@ struct meet_once {
   using P = pack_of<S>;
   static constexpr std::uint32_t capacity = 1024;  ///< for pairs that touch
 
-  struct touching_pair {
-    std::uint32_t place, other, item;
-  };
+  static constexpr unsigned lanes = lanes_of<P>;
 
   COLLIDE_HD_INLINE void meet(std::size_t begin, std::size_t end) const {
-    touching_pair found[capacity];
+    std::uint32_t found[capacity + lanes];
+    std::uint32_t const last = items.firsts[end];
+    for (std::uint32_t first = items.firsts[begin]; first < last; first += capacity)
+      meet_sorted(found, find(first, min(first + capacity, last), found));
+  }
+
+  /// The items of those that touch, or have something to remember; returns how many they are.
+  COLLIDE_HD_INLINE std::uint32_t find(std::uint32_t first, std::uint32_t last, std::uint32_t* found) const {
     std::uint32_t size = 0;
     std::uint32_t const last_item = items.firsts[order.header->count] - 1;
-    for (std::size_t i = begin; i < end; ++i) {
-      packed_sphere<S> const own = order.spheres[i];
-      std::uint32_t const last = items.firsts[i + 1];
-      for (std::uint32_t k = items.firsts[i]; k < last; ++k) {
-        std::uint32_t const other = items.others[k];
-        std::uint32_t const soon = items.others[min(k + 16, last_item)];
+    for (std::uint32_t k = first; k < last; k += lanes) {
+      listed_pair pairs[lanes];
+      for (std::uint32_t l = 0; l < lanes; ++l) {
+        pairs[l] = items.pairs[min(k + l, last - 1)];
+        std::uint32_t const soon = items.pairs[min(k + l + 16, last_item)].other;
         prefetch(order.spheres + soon);
         prefetch(items.motions + soon);
-        bool const overlap = order.within_skin(own, order.spheres[other], S(0));
-        auto const was = static_cast<std::uint8_t>(items.marks[k] & (items.remembers | items.is_upward));
-        found[size] = {static_cast<std::uint32_t>(i), other, k};
-        items.marks[k] = static_cast<std::uint8_t>(was | (overlap ? items.meets : 0));
-        size += overlap || (was & items.remembers) != 0;
-        if (size == capacity) {
-          meet_sorted(found, size);
-          size = 0;
-        }
+      }
+      vec3<P> a, b;
+      P a_radius, b_radius;
+      load_spheres(pairs, a, a_radius, b, b_radius);
+      vec3<P> const apart = a - b;
+      P const reach = a_radius + b_radius;
+      mask_of<P> const overlaps = dot(apart, apart) < reach * reach;
+      for (std::uint32_t l = 0; l < lanes && k + l < last; ++l) {
+        unsigned const meets = bits_of_lane(overlaps, int(l)) & items.meets;  // no branch: it cannot be foreseen
+        unsigned const mark = (items.marks[k + l] & unsigned(items.remembers | items.is_upward)) | meets;
+        items.marks[k + l] = static_cast<std::uint8_t>(mark);
+        found[size] = k + l;
+        size += (mark | mark / items.meets) & items.remembers;
       }
     }
-    meet_sorted(found, size);
+    return size;
   }
 
   /// Pairs of the same two solids are together.
-  COLLIDE_HD_INLINE void meet_sorted(touching_pair* found, std::uint32_t size) const {
+  COLLIDE_HD_INLINE void meet_sorted(std::uint32_t* found, std::uint32_t size) const {
     effects.for_mutual([&](auto const& effect) {
       auto const& made_of = effect.made_of;
       constexpr unsigned kinds = std::decay_t<decltype(made_of)>::pairs;
-      if constexpr (kinds == 1) {
-        meet_together(effect, found, size, made_of.of_pair(0));
-      } else {
-        std::uint32_t ends[kinds + 1] = {};
+      std::uint32_t ends[kinds + 1] = {0, size};
+      std::uint32_t sorted[kinds == 1 ? 1 : capacity];
+      if constexpr (kinds != 1) {
         std::uint16_t kind_of[capacity];
-        touching_pair sorted[capacity];
+        ends[1] = 0;
         for (std::uint32_t k = 0; k < size; ++k) {
+          listed_pair const& pair = items.pairs[found[k]];
           kind_of[k] = static_cast<std::uint16_t>(
-              made_of.pair_of(items.motions[found[k].place].solid(), items.motions[found[k].other].solid()));
+              made_of.pair_of(items.motions[pair.place].solid(), items.motions[pair.other].solid()));
           ++ends[kind_of[k] + 1];
         }
         for (unsigned kind = 0; kind < kinds; ++kind) ends[kind + 1] += ends[kind];
-        std::uint32_t begin = 0;
-        for (std::uint32_t k = 0; k < size; ++k) sorted[ends[kind_of[k]]++] = found[k];
-        for (unsigned kind = 0; kind < kinds; ++kind) {
-          meet_together(effect, sorted + begin, ends[kind] - begin, made_of.of_pair(static_cast<int>(kind)));
-          begin = ends[kind];
-        }
+        std::uint32_t begins[kinds];
+        std::copy_n(ends, kinds, begins);
+        for (std::uint32_t k = 0; k < size; ++k) sorted[begins[kind_of[k]]++] = found[k];
+        found = sorted;
       }
+      for (unsigned kind = 0; kind < kinds; ++kind)
+        meet_together(effect, found + ends[kind], ends[kind + 1] - ends[kind], made_of.of_pair(static_cast<int>(kind)));
     });
   }
 
-  static constexpr unsigned lanes = lanes_of<P>;
   static constexpr unsigned remembered_width = unsigned(contact_values<S, remembered>::width);
   /// Numbers of a record as they are read: it is as wide as a multiple of four if it has more than two.
   static constexpr unsigned record_width = remembered_width > 2 ? (remembered_width + 3) / 4 * 4 : remembered_width + 1;
 
   template <class Effect, class Material>
-  COLLIDE_HD_INLINE void meet_together(Effect const& effect, touching_pair const* found, std::uint32_t size,
+  COLLIDE_HD_INLINE void meet_together(Effect const& effect, std::uint32_t const* found, std::uint32_t size,
                                        Material const& of) const {
     contact_values<S, remembered> initial;
     S at_first[record_width] = {};
     initial.for_each_number([&](S& x, int c, int) { at_first[c] = x; });
     for (std::uint32_t first = 0; first < size; first += lanes) {
-      touching_pair pairs[lanes];
+      std::uint32_t item[lanes];
+      listed_pair pairs[lanes];
       S const* remembers[lanes];
       S upward[lanes], since[lanes];
       for (std::uint32_t l = 0; l < lanes; ++l) {
-        touching_pair const& pair = pairs[l] = found[min(first + l, size - 1)];  // the last fill their pack
-        std::uint8_t const mark = items.marks[pair.item];
+        item[l] = found[min(first + l, size - 1)];  // the last fill their pack
+        pairs[l] = items.pairs[item[l]];
+        std::uint8_t const mark = items.marks[item[l]];
         bool const was = (mark & items.remembers) != 0;
         remembers[l] = at_first;
-        if constexpr (remembered_width != 0) remembers[l] = was ? items.records[pair.item].numbers : at_first;
+        if constexpr (remembered_width != 0) remembers[l] = was ? items.records[item[l]].numbers : at_first;
         upward[l] = (mark & items.is_upward) != 0 ? S(1) : S(-1);
         since[l] = what != meeting::in_step && !was ? S(0) : dt;
       }
@@ -189,55 +203,56 @@ struct meet_once {
       contact_access<remembered, contact_values<P, remembered>, P> const memory(
           values, from::of([&](int l) { return since[l]; }));
       sphere_action<P> const action = effect.act(a, b, from::of([&](int l) { return upward[l]; }), of, memory);
-      keep(pairs, action, values);
+      keep(item, action, values);
     }
   }
 
-  COLLIDE_HD_INLINE void load(touching_pair const (&pairs)[lanes], meeting_sphere<P>& a, meeting_sphere<P>& b) const {
+  COLLIDE_HD_INLINE void load(listed_pair const (&pairs)[lanes], meeting_sphere<P>& a, meeting_sphere<P>& b) const {
+    load_spheres(pairs, a.position, a.radius, b.position, b.radius);
+    P motion[stored_motion<S>::width];
+    load_rows(motion, [&](int l) { return items.motions[pairs[l].place].numbers; });
+    stored_motion<S>::get(motion, a);
+    load_rows(motion, [&](int l) { return items.motions[pairs[l].other].numbers; });
+    stored_motion<S>::get(motion, b);
+  }
+  /// Centres and radii of spheres, where they meet: across a side of the box, if space repeats.
+  COLLIDE_HD_INLINE void load_spheres(listed_pair const (&pairs)[lanes], vec3<P>& a, P& a_radius, vec3<P>& b,
+                                      P& b_radius) const {
     [[maybe_unused]] packed_sphere<S> near[2][lanes];
     if constexpr (Effects::repeats) {
       for (unsigned l = 0; l < lanes; ++l) {
-        near[0][l] = order.spheres[pairs[l].place], near[1][l] = order.spheres[pairs[l].other];
-        vec3<S> x(near[0][l].x, near[0][l].y, near[0][l].z), y(near[1][l].x, near[1][l].y, near[1][l].z);
+        packed_sphere<S> const &s = order.spheres[pairs[l].place], &t = order.spheres[pairs[l].other];
+        vec3<S> x(s.x, s.y, s.z), y(t.x, t.y, t.z);
         order.space.bring_together(x, y);
-        near[0][l] = {x.x(), x.y(), x.z(), near[0][l].radius}, near[1][l] = {y.x(), y.y(), y.z(), near[1][l].radius};
+        near[0][l] = {x.x(), x.y(), x.z(), s.radius}, near[1][l] = {y.x(), y.y(), y.z(), t.radius};
       }
     }
-    for (int second = 0; second < 2; ++second) {
-      auto const place = [&](int l) { return second == 0 ? pairs[l].place : pairs[l].other; };
-      meeting_sphere<P>& s = second == 0 ? a : b;
-      P centre[4], motion[stored_motion<S>::width];
-      load_rows(centre, [&](int l) {
-        if constexpr (Effects::repeats) return &near[second][l].x;
-        return &order.spheres[place(l)].x;
-      });
-      load_rows(motion, [&](int l) { return items.motions[place(l)].numbers; });
-      for (int k = 0; k < 3; ++k) s.position[k] = centre[k];
-      s.radius = centre[3];
-      stored_motion<S>::get(motion, s);
-    }
+    P columns[4];
+    load_rows(columns, [&](int l) { return Effects::repeats ? &near[0][l].x : &order.spheres[pairs[l].place].x; });
+    a = {columns[0], columns[1], columns[2]}, a_radius = columns[3];
+    load_rows(columns, [&](int l) { return Effects::repeats ? &near[1][l].x : &order.spheres[pairs[l].other].x; });
+    b = {columns[0], columns[1], columns[2]}, b_radius = columns[3];
   }
 
-  COLLIDE_HD_INLINE void keep(touching_pair const (&pairs)[lanes], sphere_action<P> action,
+  COLLIDE_HD_INLINE void keep(std::uint32_t const (&item)[lanes], sphere_action<P> action,
                               contact_values<P, remembered>& values) const {
     constexpr unsigned width = Effects::action_width;
     P numbers[(width + 3) / 4 * 4] = {};
     action.template for_each_number<width>([&](P& x, unsigned n) { numbers[n] = x; });
-    store_rows<width>(numbers, [&](int l) { return items.actions[pairs[l].item].numbers; });
+    store_rows<width>(numbers, [&](int l) { return items.actions[item[l]].numbers; });
     bool const in_step = what == meeting::in_step;
     for (unsigned l = 0; l < lanes; ++l) {
-      bool const acts = lane_of_mask(action.is_there, int(l));
-      std::uint8_t& mark = items.marks[pairs[l].item];
+      std::uint8_t& mark = items.marks[item[l]];
       unsigned const kept = in_step ? mark & unsigned(items.is_upward | items.meets) : mark;
       unsigned const now = items.acts | items.meets | (in_step && remembered_width != 0 ? items.remembers : 0u);
-      mark = static_cast<std::uint8_t>(kept | (acts ? now : 0u));
+      mark = static_cast<std::uint8_t>(kept | (bits_of_lane(action.is_there, int(l)) & now));
     }
     if constexpr (remembered_width != 0) {
       if (!in_step) return;
       P columns[record_width];
       values.for_each_number([&](P& x, int c, int) { columns[c] = x; });
       for (unsigned c = remembered_width; c < record_width; ++c) columns[c] = 0;
-      store_rows<remembered_width>(columns, [&](int l) { return items.records[pairs[l].item].numbers; });
+      store_rows<remembered_width>(columns, [&](int l) { return items.records[item[l]].numbers; });
     }
   }
 };
@@ -345,7 +360,7 @@ class pair_actions {
   void clear() { was_saved_ = has_before_ = false; }
 
   pair_items<S, Effects> items() const {
-    return {now_.firsts.data(),  now_.others.data(), now_.marks.data(),    now_.records.data(),
+    return {now_.firsts.data(),  now_.pairs.data(), now_.marks.data(),    now_.records.data(),
             actions_.data(),     motions_.data(),    entry_firsts_.data(), entries_.data()};
   }
 
@@ -376,7 +391,7 @@ class pair_actions {
       std::uint32_t item = firsts[i];
       for_each_place(o, i, [&](std::uint32_t place) {
         if (place <= i) return;
-        now_.others.data()[item] = place;
+        now_.pairs.data()[item] = {static_cast<std::uint32_t>(i), place};
         restore(o, static_cast<std::uint32_t>(i), place, item);
         ++item;
       });
@@ -431,7 +446,7 @@ class pair_actions {
     for (std::uint32_t i = 0; i < count; ++i) {
       for (std::uint32_t k = from.firsts.data()[i]; k < from.firsts.data()[i + 1]; ++k) {
         if ((from.marks.data()[k] & 1) == 0) continue;
-        std::uint32_t const j = from.others.data()[k];
+        std::uint32_t const j = from.pairs.data()[k].other;
         id const a = waits ? i : numbers[i], b = waits ? j : numbers[j];
         of[a].push_back({b, k, false});
         of[b].push_back({a, k, true});
@@ -463,7 +478,7 @@ class pair_actions {
       place_before_.data()[a] = static_cast<std::uint32_t>(a);
       for (std::size_t end = at + from.counts[a]; at < end; ++at) {
         if (from.others[at] <= a) continue;
-        before_.others.data()[item] = from.others[at];
+        before_.pairs.data()[item] = {static_cast<std::uint32_t>(a), from.others[at]};
         before_.marks.data()[item] = 1;
         std::copy_n(from.values.begin() + std::ptrdiff_t(at * width), width, before_.records.data()[item++].numbers);
       }
@@ -478,21 +493,22 @@ class pair_actions {
 
  private:
   struct kept {
-    buffer<std::uint32_t> firsts, others;
+    buffer<std::uint32_t> firsts;
+    buffer<listed_pair> pairs;
     buffer<std::uint8_t> marks;
     buffer<record> records;
 
     void reserve(std::pmr::memory_resource* resource, std::size_t items) {
-      others.reserve(resource, items);
+      pairs.reserve(resource, items);
       marks.reserve(resource, items);
       if constexpr (has_memory) records.reserve(resource, items);
     }
-    std::size_t bytes() const { return firsts.bytes() + others.bytes() + marks.bytes() + records.bytes(); }
+    std::size_t bytes() const { return firsts.bytes() + pairs.bytes() + marks.bytes() + records.bytes(); }
     /// The item of two places, the first of which comes first.
     std::uint32_t find(std::uint32_t first, std::uint32_t second) const {
       std::uint32_t const end = firsts.data()[first + 1];
       for (std::uint32_t k = firsts.data()[first]; k < end; ++k)
-        if (others.data()[k] == second) return k;
+        if (pairs.data()[k].other == second) return k;
       return none;
     }
   };
@@ -533,7 +549,7 @@ class pair_actions {
   template <class Space>
   void ensure_capacity(Space const& space, std::size_t n) {
     std::size_t const capacity = n + n / 8 + 64;
-    if (now_.others.capacity() < n) now_.reserve(space.resource(), capacity);
+    if (now_.pairs.capacity() < n) now_.reserve(space.resource(), capacity);
     if (actions_.capacity() < n) actions_.reserve(space.resource(), capacity);
     if (entries_.capacity() < 2 * n) entries_.reserve(space.resource(), 2 * capacity);
   }

@@ -107,8 +107,8 @@ struct pressing_list {
   id* numbers;
 };
 
-/// Kernel functor of `for_each` over particles, or over `among` some: lists those that meet the box of a triangle, or
-/// are less than `margin` away from it. These are few, and much work.
+/// Kernel functor of `for_each` over particles: lists those that meet the box of a triangle, or are less than `margin`
+/// away from it. These are few, and much work.
 template <class S, class Effects, class Triangles, class Memory>
 struct list_pressing {
   particle_state<S, typename Effects::all> state;
@@ -117,11 +117,9 @@ struct list_pressing {
   Memory memory;
   pressing_list found;
   meeting what;
-  id const* among;  ///< null: all
   S margin;
 
-  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const {
-    std::size_t const i = among != nullptr ? among[k] : k;
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
     if (what == meeting::of_woken && !(is_just_woken(state, i) && has_no_mesh_kicks(state, i))) return;
     forget_mesh_kicks(state, i);
     if constexpr (Effects::any_inactive) {
@@ -202,7 +200,8 @@ struct press_on_mesh {
     sphere<S> const shape{{x[0], x[1], x[2]}, state.radius_at(i)};
     Triangles const open = triangles.opened();
     overlap_list near(tolerance_of(shape));
-    find(open, shape, near);
+    if (is_finite(shape.centre)) find(open, shape, near);
+    forget_mesh_kicks(state, i);
     int before = 0;
     if constexpr (has_memory) before = memory.counts[i];
     if (near.size != 0) return press(open, i, near, before);
