@@ -13,6 +13,7 @@
 #include <collide/effects/detail/host_members.hpp>
 #include <collide/simulation/detail/arguments.hpp>
 #include <collide/simulation/detail/bodies/body_memory.hpp>
+#include <collide/simulation/detail/neighbours/cell_order.hpp>
 #include <collide/simulation/detail/neighbours/verlet_list.hpp>
 #include <collide/simulation/detail/step/clump_motion.hpp>
 #include <collide/simulation/detail/step/lookup_space.hpp>
@@ -141,6 +142,8 @@ class simulation {
       }
     }
     if constexpr (effects_type::any_pair_contact) neighbours_.reserve(space_, particles);
+    if constexpr (in_cell_order::may_be)
+      cell_order_.reserve(resource, particles, std::max(decltype(memory_)::widest, surface_memory::widest));
     if constexpr (effects_type::overlaps) {
       surfaces_.reserve(resource, particles);
       is_pressing_known_ = false;
@@ -204,6 +207,7 @@ class simulation {
   void steps(std::size_t n, S dt) {
     if (n > std::numeric_limits<std::size_t>::max() / 2)
       throw error("collide: simulation: the number of steps is negative");
+    in_cell_order const ordered(*this, n);
     while (n-- > 0) step(dt);
   }
 
@@ -216,7 +220,8 @@ class simulation {
     std::size_t lists = 0;
     if constexpr (effects_type::any_pair_contact) lists = neighbours_.bytes();
     if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes() + overlaps_.bytes();
-    return memory_.bytes() + device_time_.bytes() + was_there_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
+    return memory_.bytes() + device_time_.bytes() + was_there_.bytes() + overflow_.bytes() + bodies_.bytes() +
+           cell_order_.bytes() + lists;
   }
 
   /// Number of particles, or of places for them, if an effect makes or removes some; see `alive`.
@@ -352,8 +357,8 @@ class simulation {
   using neighbour_lists = std::conditional_t<effects_type::any_pair_contact,
                                              detail::verlet_list<S, effects_type, meets_once>, detail::absent>;
   using surface_memory =
-      std::conditional_t<effects_type::overlaps, detail::surface_memory<S, typename effects_type::remembered>,
-                         detail::absent>;
+      detail::surface_memory<S, std::conditional_t<effects_type::overlaps, typename effects_type::remembered,
+                                                   collide::columns<>>>;
   /// The triangles near a particle, for a step that `Asks` for them.
   template <bool Asks = effects_type::any_mesh_contact>
   auto mesh_ref([[maybe_unused]] S dt) const {
@@ -450,7 +455,12 @@ class simulation {
       if (!keeps_kicks && !neighbours_.inside_is_done()) forget_pair_kicks();
       if (!keeps_kicks || !effects_type::keeps_support) {
         neighbours_.renew(space_, with_copies, effects_.space());
-        if constexpr (knows_near_mesh) is_pressing_known_ = is_pressing_known_ && !neighbours_.are_new();
+        if constexpr (meets_once) {
+          if (neighbours_.are_new()) {
+            is_pressing_known_ = false;
+            if (is_in_cell_order_) take_cell_order();
+          }
+        }
         settle_births(with_copies, dt);
         neighbours_.interact(space_, with_copies, effects_, dt, what);
       }
@@ -476,6 +486,41 @@ class simulation {
       space_.for_each(execution_space::host_accessible ? *pressing.count : detail::max(state_.size, threads),
                       detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
                           state_, effects_, triangles, memory, pressing, overlap_pool(), dt, what, threads});
+    }
+  }
+  /// For some steps, particles lie in the order of the cells of their lists, where no effect sees them all at once.
+  struct in_cell_order {
+    static constexpr bool may_be = meets_once && !has_begin_step && !effects_type::has_clumps &&
+                                   !detail::contains<columns, alive>;
+    static constexpr std::size_t fewest = 16;  ///< steps for which it pays
+    simulation& of;
+
+    in_cell_order(simulation& s, std::size_t steps) : of{s} {
+      if (!may_be || steps < fewest || !s.is_set_) return;
+      s.is_in_cell_order_ = true;
+      s.take_cell_order();
+    }
+    ~in_cell_order() {
+      if (of.is_in_cell_order_) of.leave_cell_order();
+    }
+    in_cell_order(in_cell_order const&) = delete;
+    in_cell_order& operator=(in_cell_order const&) = delete;
+  };
+  void take_cell_order() {
+    if constexpr (in_cell_order::may_be) {
+      id* const order = neighbours_.in_order();
+      if (order == nullptr) return;
+      cell_order_.take(space_, state_, surfaces_, order);
+      space_.for_each(state_.size, [=](std::size_t i) { order[i] = static_cast<id>(i); });
+      is_pressing_known_ = false;
+    }
+  }
+  void leave_cell_order() {
+    is_in_cell_order_ = is_pressing_known_ = false;
+    if constexpr (in_cell_order::may_be) {
+      if (state_.names == nullptr) return;
+      std::copy_n(state_.names, state_.size, neighbours_.in_order());
+      cell_order_.put_back(space_, state_, surfaces_);
     }
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.
@@ -701,6 +746,8 @@ class simulation {
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
   surface_memory surfaces_;
+  detail::cell_order cell_order_;
+  bool is_in_cell_order_ = false;
   buffer<id> overflow_;
   buffer<id> pressing_;                    ///< particles that may press on the mesh, and how many they are
   buffer<std::uint32_t> pressing_counts_;  ///< of those, of used `overlaps_`, and whether they were too few

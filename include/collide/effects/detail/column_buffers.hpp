@@ -2,6 +2,8 @@
 /// The memory of columns.
 #pragma once
 
+#include <algorithm>
+
 #include <collide/core/memory.hpp>
 #include <collide/effects/detail/particle.hpp>
 
@@ -19,6 +21,7 @@ struct column_buffers;
 template <class S, class... C>
 struct column_buffers<S, columns<C...>> : buffer_of<C, S>... {
   static constexpr std::size_t bytes_per_particle = (column_bytes<C, S> + ... + std::size_t{0});
+  static constexpr std::size_t widest = std::max({std::size_t{0}, column_bytes<C, S>...});
 
   void reserve([[maybe_unused]] std::pmr::memory_resource* resource, [[maybe_unused]] std::size_t n) {
     (static_cast<buffer_of<C, S>&>(*this).memory.reserve(resource, n * std::size_t(column_layout<C, S>::width)), ...);
@@ -34,6 +37,7 @@ struct column_buffers<S, columns<C...>> : buffer_of<C, S>... {
             size,
             placed,
             radius,
+            nullptr,
             nullptr};
   }
 };

@@ -169,6 +169,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
     if constexpr (is_mutual_effect<F>) return F::action_width;
     return 0;
   }
+  static constexpr bool may_be_reordered = false;  ///< see cell_order.hpp
   static constexpr unsigned action_width = (action_width_of<E>() + ... + 0u);
   /// Calls f(effect) for the one, on the host.
   template <class F>

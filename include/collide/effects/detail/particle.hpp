@@ -78,7 +78,8 @@ struct particle<S, columns<C...>> : column_slot<C, S>... {
   using scalar = S;
   using list = columns<C...>;
 
-  id number;  ///< of the particle, from 0
+  id number;  ///< where the particle is in memory, from 0
+  id name;    ///< by which effects know it, unless it has a `global_number`
   S the_radius;
 
   template <class D>
@@ -97,7 +98,7 @@ COLLIDE_HD_INLINE id number_of(particle<S, List> const& p) {
   if constexpr (contains<List, global_number>) {
     return p[global_number{}];
   } else {
-    return p.number;
+    return p.name;
   }
 }
 
@@ -173,6 +174,9 @@ struct particle_state<S, columns<C...>>
   S common_radius;     ///< if there is no column for it
   double* time;        ///< since `set`, when the step begins; null unless an effect has a member begin_step. Behind it
                        ///< what is known of a source: see `clock_size`
+  id const* names;     ///< the numbers of the particles, where they lie in another order (cell_order.hpp); or null
+
+  COLLIDE_HD_INLINE id name_at(std::size_t i) const { return names != nullptr ? names[i] : static_cast<id>(i); }
 
   template <class D>
   COLLIDE_HD_INLINE column_element<D, S>* at(D) const {
@@ -191,6 +195,7 @@ struct particle_state<S, columns<C...>>
   template <class... D>
   COLLIDE_HD_INLINE void load(particle<S, columns<D...>>& p, std::size_t i) const {
     p.number = static_cast<id>(i);
+    p.name = name_at(i);
     (load_value(D{}, p[D{}], i), ...);
     p.the_radius = radius_of(p);
   }
@@ -242,6 +247,7 @@ struct particle_state<S, columns<C...>>
     COLLIDE_UNROLL
     for (int k = 0; k < particles_per_pack; ++k) {
       p[k].number = static_cast<id>(first) + static_cast<id>(k);
+      p[k].name = name_at(p[k].number);
       p[k].the_radius = radius_of(p[k]);
     }
   }

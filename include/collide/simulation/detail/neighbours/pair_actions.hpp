@@ -30,6 +30,7 @@ template <class Effects>
 struct without_memory : Effects {
   using remembered = columns<>;
   using interaction_copies = columns<>;
+  static constexpr bool may_be_reordered = true;
   explicit without_memory(Effects const& e) : Effects(e) {}
 };
 

@@ -91,7 +91,8 @@ struct sorted_particles {
   std::uint32_t* curve;  ///< where each block is along a curve through all of space; null where it does not matter
   std::uint32_t* ends;   ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
   state_of_lists* header;
-  id* numbers;
+  id* numbers;      ///< where each particle is in memory,
+  id const* names;  ///< and its number, if that is not where it is; or null
   packed_sphere<S>* spheres;               ///< as they are in this step
   reference<S, sizes_differ>* references;  ///< as they were when the lists were made
   column_element<alive, S>* known;         ///< `alive` when the lists were made, by numbers
@@ -150,6 +151,7 @@ struct sorted_particles {
   COLLIDE_HD_INLINE interaction load(std::size_t i) const {
     interaction p;
     p.number = numbers[i];
+    p.name = number_of_place(i);
     packed_sphere<S> const s = spheres[i];
     p[position{}] = vec3<S>(s.x, s.y, s.z);
     p.the_radius = s.radius;
@@ -169,8 +171,14 @@ struct sorted_particles {
     if constexpr (contains<copied, global_number>) {
       return copies.at(global_number{})[place];
     } else {
-      return numbers[place];
+      return number_of_place(place);
     }
+  }
+  COLLIDE_HD_INLINE id number_of_place(std::size_t place) const {
+    if constexpr (Effects::may_be_reordered) {
+      if (names != nullptr) return names[numbers[place]];
+    }
+    return numbers[place];
   }
 
   /// True of a particle that a source had just made when the lists were made.

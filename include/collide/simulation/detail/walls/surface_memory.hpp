@@ -2,6 +2,7 @@
 /// The memory of particles' contacts with the mesh from step to step.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -42,6 +43,14 @@ class surface_memory {
   }
   std::size_t bytes() const { return records_.bytes() + counts_.bytes(); }
   surface_memory_ref<S, List> ref(std::size_t n) const { return {records_.data(), counts_.data(), n}; }
+
+  /// f(array with a value of each of `n` particles) for all that is used; on the host.
+  template <class F>
+  void for_each_array(std::size_t n, F const& f) const {
+    std::size_t const most = n == 0 ? 0 : *std::max_element(counts_.data(), counts_.data() + n);
+    for (std::size_t k = 0; k < most; ++k) f(records_.data() + k * n);
+    f(counts_.data());
+  }
 
   /// For a checkpoint: the contacts of each of `n` particles; the others are bodies. Waits.
   template <class Space>
@@ -84,6 +93,7 @@ class surface_memory {
     space.copy_from_host(counts_.data(), counts.data(), n);
   }
   static constexpr int width = contact_values<S, List>::width, saved_width = width + 3;
+  static constexpr std::size_t widest = sizeof(surface_record<S, List>);  ///< bytes of a value of an array
 
  private:
   static constexpr std::size_t max_contacts = surface_memory_ref<S, List>::max_contacts;
@@ -93,11 +103,14 @@ class surface_memory {
 template <class S>
 class surface_memory<S, columns<>> {
  public:
+  static constexpr std::size_t widest = 0;
   void reserve(std::pmr::memory_resource*, std::size_t) {}
   template <class Space>
   void clear(Space&, std::size_t) {}
   std::size_t bytes() const { return 0; }
   absent ref(std::size_t) const { return {}; }
+  template <class F>
+  void for_each_array(std::size_t, F const&) const {}
 };
 
 }  // namespace collide::detail
