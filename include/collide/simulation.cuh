@@ -353,12 +353,11 @@ class simulation {
   /// True if each pair is evaluated once: where a thread is alone in its block, as on a CPU.
   static constexpr bool meets_once = effects_type::meets_once && detail::works_alone<execution_space>;
   /// True if lists of neighbours tell how long particles that are far from the mesh are.
-  static constexpr bool knows_near_mesh = meets_once && effects_type::overlaps && !has_bodies && !effects_type::repeats;
+  static constexpr bool knows_near_mesh = meets_once && effects_type::overlaps && !effects_type::repeats;
   using neighbour_lists = std::conditional_t<effects_type::any_pair_contact,
                                              detail::verlet_list<S, effects_type, meets_once>, detail::absent>;
-  using surface_memory =
-      detail::surface_memory<S, std::conditional_t<effects_type::overlaps, typename effects_type::remembered,
-                                                   collide::columns<>>>;
+  using surface_memory = detail::surface_memory<
+      S, std::conditional_t<effects_type::overlaps, typename effects_type::remembered, collide::columns<>>>;
   /// The triangles near a particle, for a step that `Asks` for them.
   template <bool Asks = effects_type::any_mesh_contact>
   auto mesh_ref([[maybe_unused]] S dt) const {
@@ -467,31 +466,42 @@ class simulation {
     } else if (!keeps_kicks) {
       forget_pair_kicks();
     }
-    if constexpr (effects_type::overlaps) {
-      auto const memory = surfaces_.ref(state_.size);
-      auto const triangles = mesh_ref<true>(dt);
-      using mesh_type = std::decay_t<decltype(triangles)>;
-      using memory_type = std::decay_t<decltype(memory)>;
-      detail::pressing_list const pressing{pressing_counts_.data(), pressing_.data()};
-      bool const stays_listed = knows_near_mesh && what == detail::meeting::in_step;
-      if (!stays_listed || !is_pressing_known_) {
-        space_.fill(pressing.count, 0, 2 * sizeof(std::uint32_t));  // and the pool is empty
-        S margin = 0;
-        if constexpr (knows_near_mesh) margin = stays_listed ? neighbours_.skin() : S(0);
-        space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
-                                         state_, effects_, triangles, memory, pressing, what, margin});
-      }
-      is_pressing_known_ = stays_listed;
-      std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
-      space_.for_each(execution_space::host_accessible ? *pressing.count : detail::max(state_.size, threads),
-                      detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
-                          state_, effects_, triangles, memory, pressing, overlap_pool(), dt, what, threads});
+    if constexpr (effects_type::overlaps) press_on_mesh(dt, what);
+  }
+  /// Particles press on the mesh. Where lists of neighbours tell who has moved, particles far from the mesh are not
+  /// asked again until these are made anew, or a body has moved by their skin.
+  void press_on_mesh(S dt, detail::meeting what) {
+    auto const memory = surfaces_.ref(state_.size);
+    auto const triangles = mesh_ref<true>(dt);
+    using mesh_type = std::decay_t<decltype(triangles)>;
+    using memory_type = std::decay_t<decltype(memory)>;
+    detail::pressing_list const pressing{pressing_counts_.data(), pressing_.data()};
+    bool const stays_listed = knows_near_mesh && what == detail::meeting::in_step;
+    S skin = 0;
+    if constexpr (knows_near_mesh) skin = neighbours_.skin();
+    if (!stays_listed || !is_pressing_known_ || bodies_.moved() > 0.99 * static_cast<double>(skin)) {
+      space_.fill(pressing.count, 0, 2 * sizeof(std::uint32_t));  // and the pool is empty
+      S const margin = stays_listed ? margin_near_mesh() : S(0);
+      space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
+                                       state_, effects_, triangles, memory, pressing, what, margin});
+      if constexpr (knows_near_mesh) bodies_.mark();
     }
+    is_pressing_known_ = stays_listed;
+    std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
+    space_.for_each(execution_space::host_accessible ? *pressing.count : detail::max(state_.size, threads),
+                    detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
+                        state_, effects_, triangles, memory, pressing, overlap_pool(), dt, what, threads});
+  }
+  /// By how much farther than its radius a particle sees the mesh that is listed for some steps.
+  S margin_near_mesh() const {
+    if constexpr (knows_near_mesh) return (has_bodies ? 2 : 1) * neighbours_.skin();
+    return 0;
   }
   /// For some steps, particles lie in the order of the cells of their lists, where no effect sees them all at once.
   struct in_cell_order {
-    static constexpr bool may_be = meets_once && !has_begin_step && !effects_type::has_clumps &&
-                                   !detail::contains<columns, alive>;
+    static constexpr bool may_be =
+        meets_once && !effects_type::has_clumps && !detail::contains<columns, alive> &&
+        ((!detail::has_begin_step<Effect, execution_space, state_type, S> || detail::begins_on_ranks<Effect>)&&...);
     static constexpr std::size_t fewest = 16;  ///< steps for which it pays
     simulation& of;
 
@@ -658,8 +668,8 @@ class simulation {
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_space<execution_space> there(space_);
       S const margin = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.margin());
-      S reached = detail::reach_of<effects_type>(detail::max(radii_.largest, min_radius_)) + margin;
-      if constexpr (knows_near_mesh) reached += neighbours_.skin();
+      S const reached =
+          detail::reach_of<effects_type>(detail::max(radii_.largest, min_radius_)) + margin + margin_near_mesh();
       bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < reached);
       detail::prepare_index(index_, there, options_,
                             wider ? spheres_xyz(state_.at(position{}), n, reached) : spheres());

@@ -132,6 +132,11 @@ using begin_step_call =
     decltype(std::declval<E&>().begin_step(std::declval<Space&>(), std::declval<State const&>(), S{}));
 template <class E, class Space, class State, class S>
 inline constexpr bool has_begin_step = is_valid<begin_step_call, E, Space, State, S>;
+/// True of an effect whose `begin_step` does the same to particles wherever they are.
+template <class E, class = void>
+inline constexpr bool begins_on_ranks = false;
+template <class E>
+inline constexpr bool begins_on_ranks<E, std::void_t<decltype(E::begins_on_ranks)>> = E::begins_on_ranks;
 
 /// True for an effect that contacts with the mesh concern.
 template <class E, class S>

@@ -116,6 +116,8 @@ struct no_bodies {
   static std::size_t bytes() { return 0; }
   static std::size_t size() { return 0; }
   static int margin() { return 0; }
+  static void mark() {}
+  static double moved() { return 0; }
   static constexpr bool are_driven() { return false; }
   static constexpr bool are_placed() { return false; }
   static void place(bool) {}

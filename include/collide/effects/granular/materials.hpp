@@ -217,9 +217,7 @@ class materials {
     return number < N ? number : N - 1;
   }
   /// The number of the pair of two solids, from 0.
-  static COLLIDE_HD_INLINE int pair_of(int i, int j) {
-    return i < j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j;
-  }
+  static COLLIDE_HD_INLINE int pair_of(int i, int j) { return i < j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
   /// Constants of the pair of solids of a number.
   COLLIDE_HD_INLINE detail::contact_material const& of_pair(int number) const { return pairs_[number]; }
   template <class Particle>

@@ -21,11 +21,6 @@ struct with_global_numbers {
   using reads = columns<global_number>;
 };
 
-template <class E, class = void>
-inline constexpr bool begins_on_ranks = false;
-template <class E>
-inline constexpr bool begins_on_ranks<E, std::void_t<decltype(E::begins_on_ranks)>> = E::begins_on_ranks;
-
 /// Refuses an effect that would do something else on ranks than on one.
 template <class E, class Space, class State, class S>
 constexpr bool check_on_ranks() {

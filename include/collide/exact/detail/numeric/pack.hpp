@@ -164,8 +164,7 @@ COLLIDE_HD_INLINE pack<T, N> sqrt_rn(pack<T, N> const& a) {
   } else if constexpr (sizeof(T) == 4 && N == 8) {
     __m128 const low = _mm_sqrt_ps(__m128{a.v[0], a.v[1], a.v[2], a.v[3]}),
                  high = _mm_sqrt_ps(__m128{a.v[4], a.v[5], a.v[6], a.v[7]});
-    return pack<T, N>(
-        typename pack<T, N>::vector{low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]});
+    return pack<T, N>(typename pack<T, N>::vector{low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]});
   }
 #endif
   pack<T, N> root;
@@ -202,7 +201,8 @@ using row_of = pack<S, 4>;
 /// Four numbers in memory, and some of them.
 template <class S>
 COLLIDE_HD_INLINE pack<S, 4> load_row(S const* from) {
-  return pack<S, 4>(typename pack<S, 4>::vector(*reinterpret_cast<typename numbers_in_memory<S, 4>::vector const*>(from)));
+  return pack<S, 4>(
+      typename pack<S, 4>::vector(*reinterpret_cast<typename numbers_in_memory<S, 4>::vector const*>(from)));
 }
 template <unsigned Used, class S>
 COLLIDE_HD_INLINE void store_row(S* to, pack<S, 4> const& row) {

@@ -69,6 +69,13 @@ COLLIDE_HD_INLINE bool make_unit(body_state& s) {
   return true;
 }
 
+COLLIDE_HD_INLINE double norm(vec3<double> const& x) { return sqrt_rn(dot(x, x)); }
+/// |R x - x| / |x| of the rotation from one pose to another.
+COLLIDE_HD_INLINE double turn_between(frame_pose const& a, frame_pose const& b) {
+  // the sine of half the angle between the two: from its cosine, small angles would be lost
+  return 2 * norm(scaled(b.axis, a.w) - scaled(a.axis, b.w) - cross(a.axis, b.axis));
+}
+
 /// Kernel functor of `for_each` over bodies: where each is at the end of the step, or, if it `starts`, now.
 template <class S, class Motion>
 struct advance_bodies {
@@ -127,10 +134,7 @@ struct advance_bodies {
   COLLIDE_HD_INLINE void bound(body_frame<S>& f, body_record const& r) const {
     constexpr double eps = std::numeric_limits<S>::epsilon();
     vec3<double> const shift = f.now.position - f.before.position;
-    // the sine of half the angle between the two: from its cosine, small angles would be lost
-    vec3<double> const sine =
-        scaled(f.now.axis, f.before.w) - scaled(f.before.axis, f.now.w) - cross(f.before.axis, f.now.axis);
-    double const turned = 2 * norm(sine);  // |R x - x| / |x|
+    double const turned = turn_between(f.before, f.now);
     double const shifted = sqrt_rn(dot(shift, shift)), moved = shifted + mul_rn(turned, norm(r.centre));
     vec3<double> const from = f.before.to_world(r.centre), to = f.now.to_world(r.centre), by = to - from;
     f.moves = !(f.before == f.now) || dot(f.conveyor_velocity, f.conveyor_velocity) > 0 ? 1 : 0;
@@ -147,8 +151,6 @@ struct advance_bodies {
     bool const is_rough = mul_rn(units * eps, norm(from) + norm(to) + r.radius) > radius;
     if (swept && is_rough && turned > 0.05) fetch_add(&report->rough_steps, 1u);
   }
-
-  static COLLIDE_HD_INLINE double norm(vec3<double> const& x) { return sqrt_rn(dot(x, x)); }
 };
 
 /// The bodies of a simulation's mesh.
@@ -242,6 +244,7 @@ class body_memory {
     for (body_record const& r : records) extent = max(extent, sqrt_rn(dot(r.centre, r.centre)) + r.radius);
     margin_ = float_frame_margin<S>(extent);
     std::vector<body_state> const states(count_);
+    marked_.resize(count_);
     space.copy_from_host(records_.reserve(resource, count_), records.data(), count_);
     space.copy_from_host(states_.reserve(resource, count_), states.data(), count_);
     space.copy_from_host(frames_.reserve(resource, frames), at_rest.data(), frames);
@@ -279,6 +282,22 @@ class body_memory {
 
   /// True if the caller says where they are.
   static constexpr bool are_driven() { return std::is_same<Motion, driven>::value; }
+
+  /// On the host: keeps where bodies are.
+  void mark() {
+    for (std::size_t k = 0; k < count_; ++k) marked_[k] = frames_.data()[k + 1].now;
+  }
+  /// On the host: how far a point of a body may be from where it was at the last `mark`.
+  double moved() const {
+    double farthest = 0;
+    for (std::size_t k = 0; k < count_; ++k) {
+      frame_pose const &before = marked_[k], &now = frames_.data()[k + 1].now;
+      body_record const& r = records_.data()[k];
+      double const shifted = norm(now.to_world(r.centre) - before.to_world(r.centre));
+      farthest = max(farthest, shifted + turn_between(before, now) * r.radius);
+    }
+    return farthest;
+  }
 
   /// How much larger than the particles' the radius is that the mesh is to be indexed for.
   S margin() const { return margin_; }
@@ -318,6 +337,7 @@ class body_memory {
   buffer<body_state> states_;
   buffer<body_frame<S>> frames_;
   buffer<float_frame<S>> quick_;
+  std::vector<frame_pose> marked_;
   S margin_ = 0;
   bool is_placed_ = false;  ///< of bodies that the caller drives: they have begun where the caller wants them
   buffer<body_report> report_;

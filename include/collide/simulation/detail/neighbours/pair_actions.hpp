@@ -50,8 +50,8 @@ struct pair_items {
 
   std::uint32_t* firsts;
   listed_pair* pairs;
-  std::uint8_t* marks;    ///< of these: `remembers` something, `acts` in this step, and any is seen as in contact;
-                          ///< `is_upward`: the first of the two has the larger number
+  std::uint8_t* marks;  ///< of these: `remembers` something, `acts` in this step, and any is seen as in contact;
+                        ///< `is_upward`: the first of the two has the larger number
   record* records;
   action* actions;
   stored_motion<S>* motions;  ///< by places
@@ -361,8 +361,8 @@ class pair_actions {
   void clear() { was_saved_ = has_before_ = false; }
 
   pair_items<S, Effects> items() const {
-    return {now_.firsts.data(),  now_.pairs.data(), now_.marks.data(),    now_.records.data(),
-            actions_.data(),     motions_.data(),    entry_firsts_.data(), entries_.data()};
+    return {now_.firsts.data(), now_.pairs.data(), now_.marks.data(),    now_.records.data(),
+            actions_.data(),    motions_.data(),   entry_firsts_.data(), entries_.data()};
   }
 
   /// Before places change: keeps what contacts remember.
@@ -487,7 +487,7 @@ class pair_actions {
     before_.firsts.data()[saved_] = item;
   }
 
-  std::size_t bytes() const { 
+  std::size_t bytes() const {
     return now_.bytes() + before_.bytes() + place_before_.bytes() + actions_.bytes() + motions_.bytes() +
            entry_firsts_.bytes() + entries_.bytes();
   }

@@ -371,7 +371,7 @@ class verlet_list {
   cells cells_{};
   small_cells<S> small_{};
   S skin_{};
-  std::size_t blocks_ = 0, listed_ = 0;  ///< how many particles have lists
+  std::size_t blocks_ = 0, listed_ = 0;          ///< how many particles have lists
   bool are_new_ = false, are_complete_ = false;  ///< for particles where they are: `check` has just found that
   buffer<state_of_lists> header_;
   std::size_t at_border_ = 0;         ///< particles that copies of other ranks' may meet, while lists are complete
