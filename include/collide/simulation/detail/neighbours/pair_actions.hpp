@@ -95,7 +95,7 @@ struct meet_once {
   meeting what;
 
   COLLIDE_AS_O3 void operator()(std::size_t begin, std::size_t end) const {
-    multiversioned([=, this] { meet(begin, end); });
+    multiversioned([&, this] { meet(begin, end); });
   }
 
  private:
