@@ -204,15 +204,16 @@ class checkpoint {
 
   /// Gives a simulation, or a rank's part of one, whose particles are there, all that is not known of each: the time,
   /// effects and bodies.
-  void restore_rest(state_type& s, double const* clock) const {
-    if constexpr (state_type::has_begin_step) s.space.copy_from_host(s.particles.time, clock, clock_size);
+  template <class State>
+  void restore_rest(State& s, double const* clock) const {
+    if constexpr (State::has_begin_step) s.space.copy_from_host(s.particles.time, clock, clock_size);
     (restore_parameters_of<Effect>(s.effects), ...);
     s.time = numbers_.time;
     s.next_meeting = numbers_.meeting_between_steps();
     preparation prepare(s);
     prepare.know_smallest();
     prepare.bodies_and_index();
-    if constexpr (state_type::has_bodies) {
+    if constexpr (State::has_bodies) {
       std::size_t next = 0;
       s.bodies.for_each_saved([&](std::string const&, auto* elements, std::size_t) {
         auto const& saved = bodies_[next++];
@@ -237,7 +238,7 @@ class checkpoint {
   template <class Archive>
   static void pass_types(Archive& archive) {
     archive.text("scalar", type_name<S>());
-    archive.text("narrow phase", type_name<typename simulated::narrow_phase>());
+    archive.text("narrow phase", type_name<typename state_type::narrow_phase>());
     std::string list;
     ((list += (list.empty() ? "" : ", ") + type_name<Effect>()), ...);
     archive.text("effects", list);
