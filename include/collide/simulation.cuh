@@ -52,6 +52,7 @@ class simulation {
   using broad_phase = typename Detector::broad_phase;
   using narrow_phase = typename Detector::narrow_phase;
   using state_of_all = detail::simulation_state<Detector, Effect...>;
+  using bodies_memory = detail::bodies_of<S, Effect...>;
 
   static_assert(detail::check_effects<execution_space, S, Effect...>());
   static_assert(detail::check_clumps<execution_space, S, effects_type, Effect...>());
@@ -284,7 +285,7 @@ class simulation {
   }
 
   /// The bodies of the mesh, in a scene with `moving_bodies`: where they are; see `body_memory`.
-  typename state_of_all::bodies_type const& bodies() const { return all_.bodies; }
+  bodies_memory const& bodies() const { return all_.bodies; }
 
   state_type const& state() const { return all_.particles; }   ///< pointers to all columns, valid until the next `set`
   execution_space& space() { return all_.space; }              ///< for work of your own on its stream, and to wait

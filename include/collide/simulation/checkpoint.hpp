@@ -42,7 +42,7 @@ struct saved_numbers {
   std::uint8_t reverse_order = 0, next_meeting = 0, bodies_are_placed = 0;
 
   saved_numbers() = default;
-  /// Those of a simulation, or of a rank's part of one, of which `particles` may know how many there are of all.
+  /// The numbers of a simulation, or of a rank's part of one with so many particles of all ranks. Waits.
   template <class State>
   saved_numbers(State const& s, std::uint64_t all_places, std::uint64_t all_placed)
       : triangles{s.mesh.size()},

@@ -32,8 +32,8 @@ overlap_pool empty_overlap_pool(State const& s) {
           s.pressing_counts.data() + 2};
 }
 
-/// What happens in a step, in this order: `check_step`, `begin_step`, `meet`, `end_step`; and what wakes particles
-/// between steps. A view of a simulation's data, which it changes.
+/// The phases of a step, in this order: `check_step`, `begin_step`, `meet`, `end_step`; and, between steps, those that
+/// wake or free particles. A view of a simulation's data, which it changes.
 template <class Detector, class... Effect>
 class step_phases {
  public:
@@ -67,20 +67,18 @@ class step_phases {
     (begin_step_of<Effect>(dt), ...);
     if constexpr (effects_type::makes && effects_type::remembers_surfaces) {
       if (s_.effects.due(static_cast<double>(dt)) > 0)
-        s_.space.for_each(s_.particles.size, forget_surfaces<effects_type, particles_type>{
-                                                 s_.particles, s_.surfaces.ref(s_.particles.size).counts});
+        for_each(
+            forget_surfaces<effects_type, particles_type>{s_.particles, s_.surfaces.ref(s_.particles.size).counts});
     }
     s_.effects.prepare(dt);
     if constexpr (effects_type::keeps_mesh_kicks)
-      s_.space.for_each(s_.particles.size, record_first_kicks<S, effects_type>{s_.particles, s_.effects, dt,
-                                                                               s_.mesh.size(), s_.bodies.size()});
+      for_each(record_first_kicks<S, effects_type>{s_.particles, s_.effects, dt, s_.mesh.size(), s_.bodies.size()});
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (state_type::has_begin_step)
       s_.space.for_each(1, advance_time{s_.particles.time, double(dt), s_.effects.due(static_cast<double>(dt))});
     if constexpr (effects_type::ends_after_meeting) move(dt);
     if constexpr (effects_type::has_clumps)
-      s_.space.for_each(s_.particles.size,
-                        move_clumps<S, effects_type>{s_.particles, s_.effects, s_.effects.space(), dt});
+      for_each(move_clumps<S, effects_type>{s_.particles, s_.effects, s_.effects.space(), dt});
     wake_by_bodies(dt);
     wake_where_others_went(dt);
   }
@@ -110,8 +108,8 @@ class step_phases {
       using memory_type = std::decay_t<decltype(memory)>;
       pressing_list const pressing{s_.pressing_counts.data(), s_.pressing.data()};
       overlap_pool const pool = empty_overlap_pool(s_);
-      s_.space.for_each(s_.particles.size, list_pressing<S, effects_type, mesh_type, memory_type>{
-                                               s_.particles, s_.effects, triangles, memory, pressing, what});
+      for_each(list_pressing<S, effects_type, mesh_type, memory_type>{s_.particles, s_.effects, triangles, memory,
+                                                                      pressing, what});
       std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
       s_.space.for_each(max(s_.particles.size, threads),
                         press_on_mesh<S, effects_type, mesh_type, memory_type>{
@@ -130,15 +128,15 @@ class step_phases {
         s_.neighbours.settle_births(s_.space, with_copies, s_.effects.makes_only_where_free());
     }
     if constexpr (state_type::may_be_made && effects_type::remembered::size != 0)
-      s_.space.for_each(s_.particles.size, take_marks_off{s_.particles.at(alive{})});
+      for_each(take_marks_off{s_.particles.at(alive{})});
   }
+
   /// The part of a step after particles have met.
   void end_step(S dt) {
     if constexpr (effects_type::has_clumps)
-      s_.space.for_each(s_.particles.size,
-                        end_clumps<S, effects_type>{s_.particles, s_.effects, s_.effects.space(), dt});
+      for_each(end_clumps<S, effects_type>{s_.particles, s_.effects, s_.effects.space(), dt});
     if constexpr (effects_type::ends_after_meeting) {
-      s_.space.for_each(s_.particles.size, end_particles<S, effects_type>{s_.particles, s_.effects, dt});
+      for_each(end_particles<S, effects_type>{s_.particles, s_.effects, dt});
     } else {
       move(dt);
     }
@@ -152,7 +150,7 @@ class step_phases {
       constexpr bool asks_forces =
           effects_type::ends_after_meeting && (effects_type::overlaps || !effects_type::keeps_support);
       if constexpr (asks_forces && contains<columns, in_contact>) {
-        s_.space.for_each(s_.particles.size, wake_between_steps<S, effects_type>{s_.particles, s_.effects});
+        for_each(wake_between_steps<S, effects_type>{s_.particles, s_.effects});
         if (knows_pair_forces()) s_.next_meeting = meeting::of_woken;
       } else {
         s_.space.fill(s_.particles.at(slow_steps{}), 0, s_.particles.size);
@@ -164,9 +162,8 @@ class step_phases {
   /// Frees particles that stick to the mesh and do not touch it any more.
   void release_stuck() {
     if constexpr (effects_type::adheres) {
-      s_.space.for_each(s_.particles.size,
-                        detail::release_stuck{s_.particles, mesh_ref<effects_type::any_mesh_contact>(s_, S(0)),
-                                              s_.bodies.are_driven(), s_.bodies.size()});
+      for_each(detail::release_stuck{s_.particles, mesh_ref<effects_type::any_mesh_contact>(s_, S(0)),
+                                     s_.bodies.are_driven(), s_.bodies.size()});
     }
   }
 
@@ -180,6 +177,12 @@ class step_phases {
   }
 
  private:
+  /// Runs a kernel functor over all particles.
+  template <class Kernel>
+  void for_each(Kernel const& kernel) {
+    s_.space.for_each(s_.particles.size, kernel);
+  }
+
   /// Rounded to numbers of this type, the bounds of a box that repeats are bounds, too.
   template <class E>
   COLLIDE_COLD void check_box_of() const {
@@ -211,7 +214,7 @@ class step_phases {
   template <class E>
   void begin_step_of(S dt) {
     if constexpr (state_type::template may_make<E>)
-      s_.space.for_each(s_.particles.size, copy_values<std::uint8_t>{s_.particles.at(alive{}), s_.was_there.data()});
+      for_each(copy_values<std::uint8_t>{s_.particles.at(alive{}), s_.was_there.data()});
     detail::begin_step_of<E>(s_.effects, s_.space, s_.particles, dt);
     if constexpr (state_type::template may_make<E>) begin_anew<writes_of<E>>();
   }
@@ -221,8 +224,7 @@ class step_phases {
     using initial = difference_of<columns, kept>;
     std::uint8_t* surfaces = nullptr;
     if constexpr (effects_type::remembers_surfaces) surfaces = s_.surfaces.ref(s_.particles.size).counts;
-    s_.space.for_each(s_.particles.size,
-                      detail::begin_anew<S, effects_type, initial>{s_.particles, s_.was_there.data(), surfaces});
+    for_each(detail::begin_anew<S, effects_type, initial>{s_.particles, s_.was_there.data(), surfaces});
   }
 
   /// Wakes particles that sleep where a body that moves may touch them: before ranks tell each other what is awake, and
@@ -232,8 +234,7 @@ class step_phases {
                   contains<typename effects_type::inactive_reads, slow_steps>) {
       auto const triangles = mesh_ref<true>(s_, dt);
       using mesh_type = std::decay_t<decltype(triangles)>;
-      s_.space.for_each(s_.particles.size,
-                        detail::wake_by_bodies<S, effects_type, mesh_type>{s_.particles, s_.effects, triangles});
+      for_each(detail::wake_by_bodies<S, effects_type, mesh_type>{s_.particles, s_.effects, triangles});
     }
   }
 
@@ -242,7 +243,7 @@ class step_phases {
   void wake_where_others_went([[maybe_unused]] S dt) {
     if constexpr (effects_type::makes && effects_type::any_pair_contact && contains<columns, slow_steps>) {
       if (s_.effects.due(static_cast<double>(dt)) > 0 && !s_.effects.makes_only_where_free())
-        s_.space.for_each(s_.particles.size, detail::wake_where_others_went<particles_type>{s_.particles});
+        for_each(detail::wake_where_others_went<particles_type>{s_.particles});
     }
   }
 
