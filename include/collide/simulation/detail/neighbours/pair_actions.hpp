@@ -104,7 +104,7 @@ struct meet_once {
 
   static constexpr unsigned lanes = lanes_of<P>;
 
-  COLLIDE_HD_INLINE void meet(std::size_t begin, std::size_t end) const {
+  void meet(std::size_t begin, std::size_t end) const {
     std::uint32_t found[capacity + lanes];
     std::uint32_t const last = items.firsts[end];
     for (std::uint32_t first = items.firsts[begin]; first < last; first += capacity)
@@ -141,7 +141,7 @@ struct meet_once {
   }
 
   /// Pairs of the same two solids are together.
-  COLLIDE_HD_INLINE void meet_sorted(std::uint32_t* found, std::uint32_t size) const {
+  void meet_sorted(std::uint32_t* found, std::uint32_t size) const {
     effects.for_mutual([&](auto const& effect) {
       auto const& made_of = effect.made_of;
       constexpr unsigned kinds = std::decay_t<decltype(made_of)>::pairs;
