@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/integrators.hpp>
@@ -50,15 +51,29 @@ materials<2> two_solids() {
   return m;
 }
 
+/// Pushes each particle by its number, wherever it lies.
+struct push_by_number {
+  using reads = columns<>;
+  using writes = columns<velocity>;
+  template <class Particle, class S>
+  COLLIDE_HD void accelerate(Particle& p, S dt) const {
+    p[velocity{}].x() += static_cast<S>(p.number() % 7) * dt;
+  }
+};
+
 /// All that a simulation is after some steps, with a restart in between.
 template <class S, class Law, class Space>
 std::string played(Space const& space, Law const& law, heap const& of) {
-  using made_type = simulation<detector<bucket, karabassi<>, Space, S>, polydisperse, gravity, Law, velocity_verlet>;
-  made_type made(space, polydisperse{}, gravity{0, 0, -9.81}, law, velocity_verlet{});
+  using made_type = simulation<detector<bucket, karabassi<>, Space, S>, polydisperse, gravity, push_by_number, Law,
+                               velocity_verlet, moving_bodies<>>;
+  made_type made(space, polydisperse{}, gravity{0, 0, -9.81}, push_by_number{}, law, velocity_verlet{},
+                 moving_bodies<>{});
   std::vector<S> const floor{-1, -1, -S(0.001), 2, -1, -S(0.001), -1, 2, -S(0.001)};
   std::vector<S> const x(of.centres.begin(), of.centres.end()), v(of.velocities.begin(), of.velocities.end()),
       r(of.radii.begin(), of.radii.end());
-  made.set_mesh(triangle_soup(floor.data(), 1));
+  body_motion lift;
+  lift.velocity[2] = 1;  // farther than the skin of lists in 40 steps
+  made.set_mesh(triangle_soup(floor.data(), 1), {body{0, 1, lift}});
   made.set(spheres_xyz(x.data(), r.size(), r.data()), v.data());
   if constexpr (detail::contains<typename made_type::columns, material>) made.template assign<material>(of.made_of);
   std::string all;

@@ -55,8 +55,8 @@ struct pair_items {
   record* records;
   action* actions;
   stored_motion<S>* motions;  ///< by places
-  /// Of the particle at place i, in the order of the others' numbers, from entry_firsts[i] on: twice the item, and 1
-  /// where the particle is the second of the pair.
+  /// The contacts of the particle at place i are entries from entry_firsts[i] on, in the order of the others' numbers:
+  /// twice the item, and 1 where the particle is the second of the pair.
   std::uint32_t* entry_firsts;
   std::uint32_t* entries;
 };

@@ -91,8 +91,8 @@ struct sorted_particles {
   std::uint32_t* curve;  ///< where each block is along a curve through all of space; null where it does not matter
   std::uint32_t* ends;   ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
   state_of_lists* header;
-  id* numbers;                             ///< where each particle is in memory,
-  id const* names;                         ///< and its number, if that is not where it is; or null
+  id* numbers;                             ///< where each particle is in memory
+  id const* names;                         ///< the number of each, if that is not where it is; or null
   packed_sphere<S>* spheres;               ///< as they are in this step
   reference<S, sizes_differ>* references;  ///< as they were when the lists were made
   column_element<alive, S>* known;         ///< `alive` when the lists were made, by numbers

@@ -199,7 +199,7 @@ class verlet_list {
   /// True if the last `renew` has made the lists anew; where particles meet once a pair.
   bool are_new() const { return are_new_; }
 
-  /// Where the particles of the lists are in memory, in the order of cells. On the host; null if there are none.
+  /// The places in memory of the lists' particles, in the order of cells. On the host; null if there are no lists.
   id* in_order() const { return header_.capacity() != 0 && header_.data()->count != 0 ? numbers_.data() : nullptr; }
 
   /// True if there was no room for what some contact remembers. Waits.
