@@ -71,14 +71,18 @@ struct store_motions {
 
   void operator()(std::size_t i) const {
     if (i >= order.header->count) return;
-    using interaction = particle<S, typename Effects::interaction>;
     interaction p;
     state.load(p, order.numbers[i]);
-    effects.for_mutual([&](auto const& effect) {
-      using effect_type = std::decay_t<decltype(effect)>;
-      particle_access<effect_type, interaction> const seen(p);
-      motions[i].set(effect.template see<S>([&](int) { return seen; }), effect.made_of.solid_of(seen));
-    });
+    effects.for_mutual([&](auto const& effect) { store(effect, p, motions[i]); });
+  }
+
+ private:
+  using interaction = particle<S, typename Effects::interaction>;
+
+  template <class Effect>
+  static COLLIDE_HD_INLINE void store(Effect const& effect, interaction& p, stored_motion<S>& to) {
+    particle_access<Effect, interaction> const seen(p);
+    to.set(effect.template see<S>([&](int) { return seen; }), effect.made_of.solid_of(seen));
   }
 };
 
@@ -169,7 +173,8 @@ struct meet_once {
 
   static constexpr unsigned remembered_width = unsigned(contact_values<S, remembered>::width);
   /// Numbers of a record as they are read: it is as wide as a multiple of four if it has more than two.
-  static constexpr unsigned record_width = remembered_width > 2 ? (remembered_width + 3) / 4 * 4 : remembered_width + 1;
+  static constexpr unsigned record_width = remembered_width > 2 ? (remembered_width + 3) / 4 * 4
+                                                                : max(remembered_width, 1u);
 
   template <class Effect, class Material>
   COLLIDE_HD_INLINE void meet_together(Effect const& effect, std::uint32_t const* found, std::uint32_t size,
@@ -551,7 +556,7 @@ class pair_actions {
   void ensure_capacity(Space const& space, std::size_t n) {
     std::size_t const capacity = n + n / 8 + 64;
     if (now_.pairs.capacity() < n) now_.reserve(space.resource(), capacity);
-    if (actions_.capacity() < n) actions_.reserve(space.resource(), capacity);
+    if (actions_.capacity() <= n) actions_.reserve(space.resource(), capacity);
     if (entries_.capacity() < 2 * n) entries_.reserve(space.resource(), 2 * capacity);
   }
 
