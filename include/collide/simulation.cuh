@@ -413,7 +413,7 @@ class simulation {
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
     if constexpr (effects_type::ends_after_meeting) move(dt);
     if constexpr (effects_type::has_clumps)
-      space_.for_each(state_.size, detail::move_clumps<S, effects_type>{state_, effects_, effects_.space(), dt});
+      space_.for_each(state_.size, detail::step_clumps<S, effects_type, false>{state_, effects_, effects_.space(), dt});
     wake_by_bodies(dt);
     wake_where_others_went(dt);
   }
@@ -499,7 +499,7 @@ class simulation {
   /// The part of a step after particles have met.
   void end_step(S dt) {
     if constexpr (effects_type::has_clumps)
-      space_.for_each(state_.size, detail::end_clumps<S, effects_type>{state_, effects_, effects_.space(), dt});
+      space_.for_each(state_.size, detail::step_clumps<S, effects_type, true>{state_, effects_, effects_.space(), dt});
     if constexpr (effects_type::ends_after_meeting) {
       space_.for_each(state_.size, detail::end_particles<S, effects_type>{state_, effects_, dt});
     } else {

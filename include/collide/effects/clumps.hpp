@@ -24,8 +24,7 @@ struct clump_rotation {
   using value = detail::several<S, 4>;
 };
 
-/// The principal moments of inertia over the mass, length squared; and the cube of the radius of a sphere of the same
-/// volume.
+/// The principal moments of inertia over the mass, length squared; and the radius of a sphere of the same volume.
 struct clump_inertia {
   template <class S>
   using value = detail::several<S, 4>;
@@ -33,17 +32,18 @@ struct clump_inertia {
 
 /// Spheres move in clumps, as `set_clumps` has placed them (place_clumps.hpp); the others are grains by themselves. A
 /// clump has the density of its spheres' material, and the volume of its shape. The spheres of one have consecutive
-/// numbers and do not meet each other. What they meet, and the mesh, acts on them as on single spheres: dashpots know a
-/// sphere's mass, not the clump's. Forces are summed in the order of the spheres. All other effects that accelerate,
-/// such as `gravity` and `drag`, do so at the centre of mass.
+/// numbers and do not meet each other. What they meet, and the mesh, acts on them as on spheres of the clump's mass.
+/// Forces are summed in the order of the spheres, those of effects too that know more of a sphere than its motion, such
+/// as `external_forces`. Other effects that accelerate, such as `gravity` and `drag`, do so at the centre of mass. For
+/// `mass_flow` and `absorbing_box` a clump is a sphere of its volume at its centre.
 ///
 /// With `velocity_verlet` and contact by forces, `granular_contact` or `sphere_contact`. Between the half kicks a clump
 /// turns freely by a symplectic splitting into rotations around its principal axes (A. Dullweber, B. Leimkuhler and
 /// R. McLachlan, Journal of Chemical Physics 107, 1997), of second order: its energy goes up and down and does not
-/// drift, and its angular momentum is the same to the bit. The step must be short beside a turn. 20 scalars a sphere.
+/// drift, and its angular momentum is the same to the bit. The step must be short beside a turn. 21 scalars a sphere.
 struct clumps {
-  using writes = columns<position, velocity, angular_velocity, in_clump, clump_offset, clump_centre, clump_velocity,
-                         clump_momentum, clump_rotation, clump_inertia>;
+  using writes = columns<position, velocity, angular_velocity, in_clump, clump_mass, clump_offset, clump_centre,
+                         clump_velocity, clump_momentum, clump_rotation, clump_inertia>;
 
   double reach = 0;  ///< of any clump from its centre to a sphere's surface, at most: `set_clumps` sets it
 };

@@ -179,6 +179,12 @@ struct in_clump {
   static constexpr id initial = no_id;  ///< of a grain by itself
 };
 
+/// The mass of a sphere's clump over that of the sphere by itself: dashpots know it. 1 of a grain by itself.
+struct clump_mass : detail::number_column {
+  template <class S>
+  static constexpr S initial = S(1);
+};
+
 /// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
 struct global_number {
   template <class S>

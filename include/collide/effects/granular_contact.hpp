@@ -49,6 +49,7 @@ struct granular_contact {
   static constexpr double farthest_saddle = detail::farthest_saddle_of<Cohesion>;  ///< from the centre, less the radius
 
   using reads = detail::union_of<columns<position>, typename Materials::reads>;
+  using optional_reads = columns<clump_mass>;
   using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;
   using remembers = typename detail::contact_columns_of<
       detail::union_of<columns<>, detail::remembers_of<Tangential>, detail::remembers_of<Rolling>,
@@ -127,6 +128,7 @@ struct granular_contact {
     }
     s.radius = lanes::of([&](int k) { return seen(k).radius(); });
     s.density = lanes::of([&](int k) { return made_of.template density_of<S>(seen(k)); });
+    s.of_clump = lanes::of([&](int k) { return of_clump<S>(seen(k)); });
     return s;
   }
   /// The mass of a sphere.
@@ -188,6 +190,13 @@ struct granular_contact {
     COLLIDE_HD_INLINE no_memory const& values() const { return *this; }
   };
 
+  /// The mass of a sphere's clump over its own.
+  template <class S, class Seen>
+  static COLLIDE_HD_INLINE S of_clump([[maybe_unused]] Seen const& p) {
+    if constexpr (Seen::template has<clump_mass>) return p[clump_mass{}];
+    return S(1);
+  }
+
   /// Two spheres. True if the contact goes on.
   template <class Particle, class Seen, class Memory, class S>
   COLLIDE_HD_INLINE bool meet(Particle& p, Seen const& self, Seen const& other, Memory const& memory, S dt) const {
@@ -206,7 +215,7 @@ struct granular_contact {
     c.overlap = (a.radius + b.radius) - distance;
     c.radius = a.radius * b.radius / (a.radius + b.radius);
     c.own_radius = a.radius;
-    P const m = mass_of(a), other_m = mass_of(b);
+    P const m = mass_of(a) * a.of_clump, other_m = mass_of(b) * b.of_clump;
     c.mass = m * other_m / (m + other_m);
     vec3<P> turned(P(0), P(0), P(0));
     c.own_turning = c.turning = turned;
@@ -243,9 +252,9 @@ struct granular_contact {
       if constexpr (farthest_saddle > 0) {
         if (at_saddle) times = -hold_saddle(c, of);
       }
-      c.mass = m;
+      c.mass = m * of_clump<S>(self);
       c.is_wall = true;
-      c.rolling_inertia = S(1.4) * m * r * r;
+      c.rolling_inertia = S(1.4) * c.mass * r * r;
       vec3<S> turned(S(0), S(0), S(0));
       c.own_turning = c.turning = turned;
       if constexpr (turns) {

@@ -317,7 +317,7 @@ void add_clumps(energy_sums& to, simulation<Detector, Effect...> const& of,
              l = of.template to_host<clump_momentum>(), inertia = of.template to_host<clump_inertia>();
   for (std::size_t i = 0; i < all.clump.size(); ++i) {
     if (all.clump[i] != i) continue;
-    double const m = sphere_mass(density(i), 1.0) * static_cast<double>(inertia[4 * i + 3]);
+    double const m = sphere_mass(density(i), static_cast<double>(inertia[4 * i + 3]));
     to.kinetic += 0.5 * m * all.at(v, i).squaredNorm();
     to.rotational += 0.5 * m * all.at(l, i).dot(all.at(all.w, i));
     to.potential -= m * field.dot(all.at(x, i));

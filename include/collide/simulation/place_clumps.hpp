@@ -65,8 +65,8 @@ namespace detail {
 /// The columns of clumps, on the host.
 template <class S>
 struct columns_of_clumps {
-  std::vector<S> centres, velocities, turnings, radii, offsets, clump_centres, clump_velocities, momenta, rotations,
-      inertias;
+  std::vector<S> centres, velocities, turnings, radii, masses, offsets, clump_centres, clump_velocities, momenta,
+      rotations, inertias;
   std::vector<id> first;
   double reach = 0;
 
@@ -84,6 +84,7 @@ struct columns_of_clumps {
     for (int k = 0; k < 3; ++k) momentum[k] *= larger * shape.inertia[k];
     momentum = rotated(q, momentum);
     bool const is_clump = shape.spheres.size() > 1;
+    double const radius = std::cbrt(shape.volume / sphere_mass(1.0, 1.0));  // of a sphere of the volume
     auto const number = static_cast<id>(first.size());
     for (std::size_t n = 0; n < shape.spheres.size(); ++n) {
       vec3<double> const offset = c.scale * shape.spheres[n].centre, from = rotated(q, offset);
@@ -92,6 +93,7 @@ struct columns_of_clumps {
       put(turnings, w);
       put(offsets, offset);
       radii.push_back(static_cast<S>(c.scale * shape.spheres[n].radius));
+      masses.push_back(static_cast<S>(is_clump ? std::pow(radius / shape.spheres[n].radius, 3) : 1));
       first.push_back(is_clump ? number : no_id);
       bool const is_first = is_clump && n == 0;
       put(clump_centres, is_first * centre);
@@ -99,7 +101,7 @@ struct columns_of_clumps {
       put(momenta, is_first * momentum);
       for (double const x : q) rotations.push_back(static_cast<S>(is_first * x));
       for (double const x : shape.inertia) inertias.push_back(static_cast<S>(is_first * larger * x));
-      inertias.push_back(static_cast<S>(is_first * larger * c.scale * shape.volume / sphere_mass(1.0, 1.0)));
+      inertias.push_back(static_cast<S>(is_first * c.scale * radius));
     }
     reach = std::max(reach, c.scale * shape.reach());
   }
@@ -155,6 +157,7 @@ void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vec
   to.space().copy_from_host(to.template data<angular_velocity>(), all.turnings.data(), all.turnings.size());
   to.space().synchronize();
   to.template effect<clumps>().reach = all.reach;
+  detail::assign_from_host<clump_mass>(to, all.masses);
   detail::assign_from_host<clump_offset>(to, all.offsets);
   detail::assign_from_host<clump_centre>(to, all.clump_centres);
   detail::assign_from_host<clump_velocity>(to, all.clump_velocities);

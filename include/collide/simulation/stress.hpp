@@ -58,6 +58,8 @@ struct lone_grain {
   std::uint8_t of_solid;
   std::size_t its_number;
 
+  template <class>
+  static constexpr bool has = false;
   COLLIDE_HD S radius() const { return its_radius; }
   COLLIDE_HD std::size_t number() const { return its_number; }
   COLLIDE_HD std::uint8_t operator[](material) const { return of_solid; }

@@ -5,12 +5,15 @@
 #include <cmath>
 #include <sstream>
 
+#include <collide/effects/absorb.hpp>
 #include <collide/effects/bodies.hpp>
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/clumps.hpp>
 #include <collide/effects/contact_forces.hpp>
+#include <collide/effects/external_forces.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/integrators.hpp>
+#include <collide/effects/mass_flow.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/simulation/checkpoint.hpp>
 #include <collide/simulation/energy.hpp>
@@ -294,6 +297,82 @@ void check_rod_on_slope(Space const& space) {
   }
 }
 
+/// Dashpots know the mass of a clump: one of eight times its ball's mass leaves a floor, and another one of half of that,
+/// with the restitution of the material.
+template <class Space>
+void check_restitution_of_clumps(Space const& space) {
+  using law = granular_contact<linear>;
+  world<double> w;
+  add_floor(w, 3, 1);
+  clump_shape heavy = collide::shape_of_clump({ball{{0, 0, 0}, 0.1}});
+  heavy.spheres.push_back({{0, 0, 0}, 0.02});
+  clump_shape half = heavy;
+  heavy.volume *= 8, half.volume *= 4;
+  auto by = law_of<law>(1e7, 0.4, 0);
+  by.normal.stiffness = 1e6;
+  clumps_in<Space, double, law, collide::polydisperse> some(space, w, by, {});
+  std::vector<placed_clump> all{clump_at(0, 0, 0.11), clump_at(-1, 0, 1), clump_at(-0.79, 0, 1)};
+  all[2].shape = 1;
+  all[0].moving.linear[2] = -1, all[1].moving.linear[0] = 2;
+  collide::set_clumps(some.made, {heavy, half}, all);
+  some.made.steps(20000, 4e-6);
+  CHECK(some.speed(0).z() == doctest::Approx(0.4).epsilon(1e-3));
+  double const first = some.speed(2).x(), second = some.speed(4).x();
+  CHECK(first + second / 2 == doctest::Approx(2).epsilon(1e-12));
+  CHECK(second - first == doctest::Approx(0.8).epsilon(1e-3));
+}
+
+/// Forces on the spheres of a clump add up, and turn it.
+template <class S, class Space>
+void check_forces_on_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  S const dt = S(1e-3);
+  clumps_in<Space, S, law, collide::external_forces<>> some(space, {}, law_of<law>(1e5, 0.5, 0.3), {{1000}});
+  clump_shape const shape = dumbbell(0.5, 0.1);
+  collide::set_clumps(some.made, {shape}, {clump_at(0, 0, 0), clump_at(0, 3, 0)});
+  double const mass = 1000 * shape.volume;
+  std::vector<S> forces(12, S(0));
+  forces[2] = S(3 * mass), forces[7] = S(mass), forces[8] = S(-mass), forces[10] = S(mass), forces[11] = S(mass);
+  placed<S> const there(space, forces);
+  some.made.template assign<collide::external_force>(there.data());
+  for (int k = 0; k < 10; ++k) some.made.step(dt);
+  double const close = sizeof(S) == 4 ? 1e-4 : 1e-6, time = 0.01;
+  CHECK(some.speed(0).z() == doctest::Approx(3 * time).epsilon(sizeof(S) == 4 ? 1e-5 : 1e-12));
+  CHECK(some.speed(2).y() == doctest::Approx(2 * time).epsilon(sizeof(S) == 4 ? 1e-5 : 1e-12));
+  CHECK(std::abs(some.speed(2).z()) < 1e-8);
+  double const arm = (some.template read<position>(0) - some.centre(0)).x(), turn = arm * 3 * time;
+  CHECK(some.template read<collide::clump_momentum>(0).y() == doctest::Approx(-turn).epsilon(close));
+  CHECK(some.turning(0).y() == doctest::Approx(-turn / shape.inertia[1]).epsilon(close));
+  vector const across = some.template read<position>(2) - some.centre(2);
+  CHECK(some.template read<collide::clump_momentum>(2).y() == doctest::Approx(2 * across.x() * time).epsilon(close));
+}
+
+/// Clumps fall through a surface, each once and with its mass, and vanish as a whole.
+template <class Space>
+void check_flow_of_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  collide::flow_sums sums(space, 1e-9);
+  auto const through = sums.through({0, 0, 0}, {0, 0, -1}, collide::one_density{1000});
+  clumps_in<Space, double, gravity, law, collide::polydisperse, collide::mass_flow<>, collide::absorbing_box> some(
+      space, {}, gravity{}, law_of<law>(1e5, 0.5, 0.3), {}, through, {{-9, -9, -9}, {9, 9, -1}});
+  std::vector<placed_clump> all;
+  for (int i = 0; i < 6; ++i) {
+    all.push_back(clump_at(3 * (i % 3), 0, 0.8 + 3 * (i / 3)));
+    all.back().moving.angular[0] = i;
+  }
+  collide::set_clumps(some.made, {potato()}, all);
+  some.made.steps(3300, 2e-4);  // 2.1 m: the lower three
+  auto const flow = sums.read(space);
+  CHECK(flow.particles == 3);
+  CHECK(flow.mass == doctest::Approx(3 * 1000 * potato().volume).epsilon(1e-9));
+  auto const there = some.made.template to_host<collide::alive>();
+  for (std::size_t i = 0; i < there.size(); ++i) CHECK(int(there[i]) == int(i >= 9));
+  vector const gone = some.centre(0);
+  some.made.steps(100, 2e-4);
+  CHECK(some.centre(0) == gone);
+  CHECK(some.centre(9) != gone);
+}
+
 /// Momentum and angular momentum of clumps that meet each other close.
 template <class Law, class Space>
 void check_momentum_of_clumps(Space const& space) {
@@ -415,11 +494,12 @@ void check_clumps_in_boxes(Space const& space) {
   CHECK_THROWS_WITH_AS(small.made.step(1e-4), doctest::Contains("periodic_box"), collide::error);
 }
 
-/// A heap of clumps and balls on a floor, in any space, with a checkpoint in the middle: the same bits.
-template <class S, class Space>
+/// A heap of clumps and balls on a floor, in any space, with a checkpoint in the middle: the same bits. Beside other
+/// effects of which all parameters are as by default.
+template <class S, class Space, class... Effect>
 struct heap_of_clumps {
   using law = granular_contact<hertz, mindlin>;
-  using scene = clumps_in<Space, S, gravity, law, collide::polydisperse, collide::moving_bodies<>>;
+  using scene = clumps_in<Space, S, gravity, law, Effect..., collide::polydisperse, collide::moving_bodies<>>;
 
   static world<S> tray() {
     world<S> w;
@@ -439,7 +519,7 @@ struct heap_of_clumps {
     }
     collide::set_clumps(to.made, shapes, all);
   }
-  static scene make(Space const& space) { return scene(space, tray(), gravity{}, law_of<law>(2e5, 0.4, 0.5), {}, {}); }
+  static scene make(Space const& space) { return scene(space, tray(), gravity{}, law_of<law>(2e5, 0.4, 0.5), Effect{}..., {}, {}); }
 };
 /// Elastic, smooth clumps on a floor keep their energy, in which each point of a clump counts once.
 template <class Space>
@@ -475,10 +555,10 @@ void check_energy_of_clumps(Space const& space) {
   CHECK(before.potential < 9.81 * mass * 3.0);
 }
 
-template <class S, class Space>
+template <class S, class... Effect, class Space>
 void check_same_clumps(Space const& space) {
-  using on_host = heap_of_clumps<S, collide::host>;
-  using there = heap_of_clumps<S, Space>;
+  using on_host = heap_of_clumps<S, collide::host, Effect...>;
+  using there = heap_of_clumps<S, Space, Effect...>;
   auto reference = on_host::make(collide::host(1));
   auto found = there::make(space), loaded = there::make(space);
   on_host::place(reference);
