@@ -10,6 +10,8 @@
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/clumps.hpp>
 #include <collide/effects/contact_forces.hpp>
+#include <collide/effects/contact_work.hpp>
+#include <collide/effects/drag.hpp>
 #include <collide/effects/external_forces.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/integrators.hpp>
@@ -18,6 +20,7 @@
 #include <collide/simulation/checkpoint.hpp>
 #include <collide/simulation/energy.hpp>
 #include <collide/simulation/place_clumps.hpp>
+#include <collide/simulation/stress.hpp>
 
 #include "simulation/simulation.hpp"
 
@@ -297,8 +300,8 @@ void check_rod_on_slope(Space const& space) {
   }
 }
 
-/// Dashpots know the mass of a clump: one of eight times its ball's mass leaves a floor, and another one of half of that,
-/// with the restitution of the material.
+/// Dashpots know the mass of a clump: one of eight times its ball's mass leaves a floor, and another one of half of
+/// that, with the restitution of the material.
 template <class Space>
 void check_restitution_of_clumps(Space const& space) {
   using law = granular_contact<linear>;
@@ -506,7 +509,8 @@ struct heap_of_clumps {
     add_floor(w, 2, 4);
     return w;
   }
-  static void place(scene& to) {
+  template <class Scene>
+  static void place(Scene& to) {
     std::vector<clump_shape> const shapes{dumbbell(0.3, 0.2), potato(),
                                           collide::shape_of_clump({ball{{0, 0, 0}, 0.25}})};
     std::vector<placed_clump> all;
@@ -519,7 +523,9 @@ struct heap_of_clumps {
     }
     collide::set_clumps(to.made, shapes, all);
   }
-  static scene make(Space const& space) { return scene(space, tray(), gravity{}, law_of<law>(2e5, 0.4, 0.5), Effect{}..., {}, {}); }
+  static scene make(Space const& space) {
+    return scene(space, tray(), gravity{}, law_of<law>(2e5, 0.4, 0.5), Effect{}..., {}, {});
+  }
 };
 /// Elastic, smooth clumps on a floor keep their energy, in which each point of a clump counts once.
 template <class Space>
@@ -553,6 +559,68 @@ void check_energy_of_clumps(Space const& space) {
   CHECK(after.rotational != doctest::Approx(before.rotational).epsilon(0.1));
   CHECK(before.potential > 9.81 * mass * 1.0);
   CHECK(before.potential < 9.81 * mass * 3.0);
+}
+
+/// Of clumps that slide, roll and are damped, on a belt, all energy is accounted for.
+template <class Space>
+void check_balance_of_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  world<double> w;
+  add_floor(w, 4, 4);
+  clumps_in<Space, double, gravity, law, collide::polydisperse, collide::moving_bodies<>, collide::contact_work<>> some(
+      space, w, gravity{}, law_of<law>(1e6, 0.4, 0.5, 0.1), {}, {}, {{1000}});
+  placed<double> const corners(space, w.corners);
+  collide::body belt{0, w.corners.size() / 9, {}};
+  belt.motion.belt[1] = 0.5;
+  some.made.set_mesh(collide::triangle_soup(corners.data(), corners.size() / 9), {belt});
+  std::vector<placed_clump> all;
+  for (int i = 0; i < 12; ++i) {
+    all.push_back(clump_at(1.2 * (i % 2), 1.2 * (i / 2 % 2), 0.9 + 1.2 * (i / 4)));
+    all.back().shape = std::size_t(i) % 3;
+    all.back().scale = 0.8;
+    all.back().moving.angular[i % 3] = 3;
+    collide::turn_at_random(all.back().at.rotation, std::uint64_t(i));
+  }
+  collide::set_clumps(some.made, {potato(), dumbbell(0.3, 0.25), collide::shape_of_clump({ball{{0, 0, 0}, 0.4}})}, all);
+  auto const before = collide::energy(some.made);
+  some.made.steps(12000, 1e-4);
+  auto const after = collide::energy(some.made);
+  CHECK(after.lost() > 0.5 * before.total());
+  CHECK(after.sliding > 0.01 * before.total());
+  CHECK(after.damping > 0.1 * before.total());
+  CHECK(after.given > 1e-3 * before.total());
+  CHECK(std::abs(after.balance() - before.balance()) < 1e-7 * before.total());
+}
+
+/// A heap of clumps at rest: its stress times the volume is what its weight asks for, and it does not turn.
+template <class Space>
+void check_stress_of_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  world<double> w;
+  add_floor(w, 9, 2);
+  clumps_in<Space, double, gravity, law, collide::polydisperse, collide::drag> at_rest(
+      space, w, gravity{}, law_of<law>(1e6, 0.1, 0.8), {}, {3});
+  heap_of_clumps<double, Space>::place(at_rest);
+  at_rest.made.steps(40000, 4e-4);
+  collide::energy_sums const e = collide::energy(at_rest.made);
+  CHECK(e.kinetic < 1e-6 * e.potential);
+  double const side = 20, volume = side * side * side;
+  auto const found = collide::stress(at_rest.made, {-side / 2, -side / 2, -side / 2}, {side / 2, side / 2, side / 2});
+  CHECK(found.contact_stress[2][2] * volume == doctest::Approx(e.potential).epsilon(1e-3));
+  CHECK(found.density * volume * 9.81 < e.potential / 0.2);
+  for (int k = 0; k < 3; ++k) {
+    int const j = (k + 1) % 3;
+    CHECK(std::abs(found.contact_stress[k][j] - found.contact_stress[j][k]) < 1e-3 * found.contact_stress[2][2]);
+    CHECK(std::abs(found.kinetic_stress[k][k]) < 1e-5 * found.contact_stress[2][2]);
+  }
+  double mass = 0;
+  auto const heavier = at_rest.made.template to_host<collide::clump_mass>();
+  auto const first = at_rest.made.template to_host<collide::in_clump>();
+  auto const radii = at_rest.made.template to_host<collide::radius>();
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    if (first[i] == i || first[i] == collide::no_id)
+      mass += heavier[i] * collide::detail::sphere_mass(1000.0, radii[i]);
+  CHECK(found.density * volume == doctest::Approx(mass).epsilon(1e-12));
 }
 
 template <class S, class... Effect, class Space>

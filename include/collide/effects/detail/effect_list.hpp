@@ -87,6 +87,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using columns_if = std::conditional_t<Needed, columns<C...>, columns<>>;
   using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
                               columns_if<keeps_pair_torques, pair_angular_acceleration>>;
+  using clump_kicks =
+      columns_if<has_clumps && ((follows_pair_contacts<E> && asks_forces<E>) || ...), clump_push, clump_turn>;
   using held_columns = columns_if<any_mesh_contact && has_half_kicks, held>;
   using mesh_kick_columns = columns_if<keeps_mesh_kicks, mesh_kicks, mesh_kicks_by, mesh_kick_count>;
   using support_columns = union_of<columns_if<keeps_support, support, supported_by>,
@@ -95,7 +97,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
 
  public:
   /// All columns of the simulation.
-  using all = union_of<named, pair_kicks, held_columns, support_columns, mesh_kick_columns>;
+  using all = union_of<named, pair_kicks, clump_kicks, held_columns, support_columns, mesh_kick_columns>;
 
  private:
   /// Columns that `E` reads or writes in a member, if it `Has` it.
@@ -149,8 +151,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
   /// Columns that are written for all spheres of a clump that effects have seen as one.
-  using clump_writes =
-      difference_of<union_of<columns<>, writes_if<E, sees_clumps<E>>...>, columns<position, velocity, angular_velocity>>;
+  using clump_writes = difference_of<union_of<columns<>, writes_if<E, sees_clumps<E>>...>,
+                                     columns<position, velocity, angular_velocity>>;
   /// Columns on which forces on a particle depend that is alone.
   using acceleration_reads = union_of<columns<>, reads_if<E, changes_velocity<E, S>>...>;
   /// Columns that are read and written for particles that press on the mesh.

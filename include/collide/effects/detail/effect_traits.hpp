@@ -119,7 +119,7 @@ inline constexpr bool sees_clumps<E, std::void_t<decltype(E::sees_clumps)>> = E:
 using motion_columns = columns<position, velocity, angular_velocity>;
 template <class E, class S>
 inline constexpr bool pushes_spheres =
-    has_accelerate<E, S>::value && difference_of<union_of<reads_of<E>, writes_of<E>>, motion_columns>::size != 0;
+    has_accelerate<E, S>::value&& difference_of<union_of<reads_of<E>, writes_of<E>>, motion_columns>::size != 0;
 
 /// The forces of a list of effects, for an effect at the end of a step, `OfClump` or of a particle.
 template <class Effects, bool OfClump, class P, class S>

@@ -19,7 +19,8 @@ struct moving_clump {
   state_type const& state;
   id first;
   particle<S, part> own;
-  sphere_type whole;  ///< as effects see it that see one particle
+  sphere_type whole;                                           ///< as effects see it that see one particle
+  vec3<S> pushed_by{S(0), S(0), S(0)}, turned_by = pushed_by;  ///< changes of velocity and momentum by contacts
 
   COLLIDE_HD_INLINE moving_clump(state_type const& of, std::size_t i) : state(of), first(static_cast<id>(i)) {
     state.load(own, i, part{});
@@ -30,15 +31,20 @@ struct moving_clump {
   /// Forces on all spheres, in their order, and what else accelerates at the centre, for a time.
   COLLIDE_HD_INLINE void kick(Effects const& effects, S time) {
     turned_axes<S> const axes(own[clump_rotation{}]);
-    vec3<S> force(S(0), S(0), S(0)), torque = force;  // over the mass
+    vec3<S> force(S(0), S(0), S(0)), torque = force, more = force, more_torque = force;  // over the mass
     for_each_sphere([&](std::size_t i) {
       S const r = state.radius_at(i), share = 1 / state.at(clump_mass{})[i];
-      vec3<S> by = vector(pair_acceleration{}, i);
-      if constexpr (Effects::any_push) by += pushed(effects, i, time);
-      force += by * share;
-      torque += cross(axes.to_space(vector(clump_offset{}, i)), vec3<S>(by * share)) +
-                vector(pair_angular_acceleration{}, i) * (S(0.4) * r * r * share);
+      vec3<S> const arm = axes.to_space(vector(clump_offset{}, i)), by = vector(pair_acceleration{}, i) * share;
+      force += by;
+      torque += cross(arm, by) + vector(pair_angular_acceleration{}, i) * (S(0.4) * r * r * share);
+      if constexpr (Effects::any_push) {
+        vec3<S> const push = pushed(effects, i, time) * share;
+        more += push;
+        more_torque += cross(arm, push);
+      }
     });
+    pushed_by = force * time, turned_by = torque * time;
+    if constexpr (Effects::any_push) force += more, torque += more_torque;
     whole[position{}] = own[clump_centre{}];
     whole[velocity{}] = own[clump_velocity{}];
     whole[pair_acceleration{}] = force;
@@ -73,6 +79,12 @@ struct moving_clump {
       if constexpr (Effects::repeats) p[position{}] = space.inside(p[position{}]);
       p[velocity{}] = own[clump_velocity{}] + cross(turning, arm);
       p[angular_velocity{}] = turning;
+      if constexpr (contains<typename Effects::all, clump_push>) {
+        particle<S, columns<clump_push, clump_turn>> by;
+        by[clump_turn{}] = turning_of(axes, own[clump_inertia{}], turned_by);
+        by[clump_push{}] = pushed_by + cross(by[clump_turn{}], arm);
+        if (!moved) state.store(by, i, columns<clump_push, clump_turn>{});
+      }
       if (moved) state.store(p, i, columns<position>{});
       state.store(p, i, columns<velocity, angular_velocity>{});
     });
@@ -144,13 +156,11 @@ template <class Space, class S, class Effects, class E>
 constexpr bool check_beside_clumps() {
   using motion = columns<position, velocity, angular_velocity>;
   using written = writes_of<E>;
-  constexpr bool is_known =
-      std::is_same<E, clumps>::value || std::is_same<E, periodic_box>::value || sees_clumps<E>;
+  constexpr bool is_known = std::is_same<E, clumps>::value || std::is_same<E, periodic_box>::value || sees_clumps<E> ||
+                            follows_pair_contacts<E>;
   constexpr bool moves =
       intersection_of<motion, written>::size != 0 &&
       (has_end_step<E, S>::value || has_begin_step<E, Space, particle_state<S, typename Effects::all>, S>);
-  static_assert(is_known || !(follows_pair_contacts<E> && asks_forces<E>),
-                "collide: clumps: contact_work knows how single spheres move, not clumps");
   static_assert(is_known || !contains<written, alive>, "collide: clumps: emit makes single spheres, not clumps");
   static_assert(is_known || !(moves || asks_forces<E>),
                 "collide: clumps: an effect that moves particles when a step begins or ends, such as box_walls, does "
@@ -164,9 +174,10 @@ constexpr bool check_clumps() {
   if constexpr (Effects::has_clumps) {
     static_assert(Effects::ends_after_meeting && Effects::keeps_pair_torques,
                   "collide: clumps need velocity_verlet, and forces between particles: name granular_contact");
-    static_assert(!Effects::any_mesh_contact,
-                  "collide: clumps press on the mesh by the forces of granular_contact: bounce, friction, adhesion, absorb "
-                  "and other impulses do not know them");
+    static_assert(
+        !Effects::any_mesh_contact,
+        "collide: clumps press on the mesh by the forces of granular_contact: bounce, friction, adhesion, absorb "
+        "and other impulses do not know them");
     static_assert((check_beside_clumps<Space, S, Effects, E>() && ...));
   }
   return true;
