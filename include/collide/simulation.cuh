@@ -330,6 +330,7 @@ class simulation {
  private:
   friend class detail::checkpoint<Detector, Effect...>;
   friend class detail::part_of_simulation<simulation>;
+  friend struct detail::waiting_places;
   template <class D, class... E>
   friend struct detail::mesh_contacts_of;
   template <class D, class... E>
@@ -623,8 +624,11 @@ class simulation {
     (check_box_of<Effect>(), ...);
     if constexpr (effects_type::repeats) check_sides();
     ((detail::check_time_step_of<Effect>(effects_, dt, smallest_)), ...);
-    if (!effects_type::any_pair_contact && effects_.makes_only_where_free())
-      throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
+    if ((!effects_type::any_pair_contact || effects_type::has_clumps) && effects_.makes_only_where_free())
+      throw error(
+          "collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact, and does "
+          "not "
+          "know clumps");
   }
 
   /// Nothing goes on in silence without what contacts should remember.

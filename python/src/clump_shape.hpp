@@ -10,8 +10,8 @@
 
 namespace collide_python {
 
-/// Of spheres, x, y, z, r each: the volume, three moments of inertia, the quaternion of the frame of the principal axes,
-/// the spheres in it, and last the centre of mass.
+/// Of spheres, x, y, z, r each: the volume, three moments of inertia, the quaternion of the frame of the principal
+/// axes, the spheres in it, and last the centre of mass.
 inline std::vector<double> shape_of_clump(std::vector<double> const& numbers) {
   call_under_way const now;
   without_gil const others_run;

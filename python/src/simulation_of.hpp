@@ -94,7 +94,7 @@ class simulation_of final : public simulation_base {
     clear_all();
   }
   bool set_clumps([[maybe_unused]] std::vector<double> const& shapes,
-                  [[maybe_unused]] std::vector<double> const& placed) override {
+                  [[maybe_unused]] std::vector<double> const& placed, [[maybe_unused]] std::size_t waiting) override {
     if constexpr (has_clumps) {
       std::vector<collide::clump_shape> of;
       for (double const* from = shapes.data(); from != shapes.data() + shapes.size();) {
@@ -114,7 +114,7 @@ class simulation_of final : public simulation_base {
         from = take(take(from, c.moving.linear), c.moving.angular);
         c.scale = *from++;
       }
-      collide::set_clumps(one_, of, all);
+      collide::set_clumps(one_, of, all, waiting);
       clear_all();
     }
     return has_clumps;

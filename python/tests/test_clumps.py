@@ -20,7 +20,7 @@ def scene(*more, gravity=-9.81, restitution=0.5):
 
 
 def turned(q, x):
-    w, v = q[0], numpy.asarray(q[1:])
+    w, v, x = q[0], numpy.asarray(q[1:]), numpy.asarray(x)
     return x + 2 * numpy.cross(v, numpy.cross(v, x) + w * x)
 
 
@@ -69,6 +69,15 @@ def test_a_filling_becomes_clumps_of_several_shapes():
     assert sim.contact_report().contacts == 0
     x = sim["position"][sim["in_clump"] == -1]
     assert x == pytest.approx(filled.centres[1::2], abs=1e-14)
+
+
+@compiles
+def test_clumps_wait_for_a_source():
+    sim = scene(collide.emit(20, (0, 0, 4)))
+    sim.set_clumps(DUMBBELL, [[0, 0, 4]] * 11, waiting=10)
+    assert sim["alive"].tolist() == [1, 1] + 20 * [0]
+    sim.steps(400, 1e-3)
+    assert sim["alive"].sum() == 2 * (1 + 8) and sim.births.due == 8
 
 
 @compiles

@@ -1,4 +1,4 @@
-// expect: collide: clumps: sleep leaves out single spheres, not clumps
+// expect: collide: clumps: sleep, and effects that make or leave out particles
 #include <collide/bucket.cuh>
 #include <collide/effects/clumps.hpp>
 #include <collide/effects/granular_contact.hpp>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <collide/effects/detail/effect_list.hpp>
+#include <collide/exact/detail/numeric/random.hpp>
 
 namespace collide {
 
@@ -48,7 +49,35 @@ struct clumps {
   double reach = 0;  ///< of any clump from its centre to a sphere's surface, at most: `set_clumps` sets it
 };
 
+/// A rotation at random, all equally likely, always the same for a number: w, x, y, z into `rotation`. G. Marsaglia,
+/// Annals of Mathematical Statistics 43, 1972.
+COLLIDE_HD_INLINE void turn_at_random(double (&rotation)[4], std::uint64_t number) {
+  double squares[2], found[4];
+  for (int half = 0; half < 2; ++half) {
+    for (std::uint64_t trial = 0;; ++trial) {  // a point in the unit disc
+      std::uint64_t const n = (number << 20) + (std::uint64_t(half) << 18) + 2 * trial;
+      for (int k = 0; k < 2; ++k) found[2 * half + k] = 2 * detail::random_fraction(n + std::uint64_t(k)) - 1;
+      squares[half] = found[2 * half] * found[2 * half] + found[2 * half + 1] * found[2 * half + 1];
+      if (squares[half] < 1 && squares[half] > 0) break;
+    }
+  }
+  double const part = detail::sqrt_rn(detail::div_rn(1 - squares[0], squares[1]));
+  for (int k = 0; k < 4; ++k) rotation[k] = k < 2 ? found[k] : found[k] * part;
+}
+
 namespace detail {
+
+/// How many spheres have the clump that begins at a place; 1 if that is of a grain by itself.
+template <class State>
+COLLIDE_HD_INLINE std::size_t spheres_of_clump([[maybe_unused]] State const& state,
+                                               [[maybe_unused]] std::size_t place) {
+  std::size_t n = 1;
+  if constexpr (contains<typename State::list, in_clump>) {
+    id const* const first = state.at(in_clump{});
+    while (place + n < state.size && first[place] == place && first[place + n] == place) ++n;
+  }
+  return n;
+}
 
 /// The axes of a frame, that are its unit vectors in space, of a unit quaternion w, x, y, z.
 template <class S>

@@ -10,7 +10,6 @@
 
 #include <collide/core/memory.hpp>
 #include <collide/effects/clumps.hpp>
-#include <collide/exact/detail/numeric/random.hpp>
 #include <collide/simulation/clump_shape.hpp>
 
 namespace collide {
@@ -22,22 +21,6 @@ struct placed_clump {
   twist moving;           ///< how that moves
   double scale = 1;       ///< by how much larger than its shape it is, above 0
 };
-
-/// A rotation at random, all equally likely, always the same for a number: w, x, y, z into `rotation`. G. Marsaglia,
-/// Annals of Mathematical Statistics 43, 1972.
-inline void turn_at_random(double (&rotation)[4], std::uint64_t number) {
-  double squares[2], found[4];
-  for (int half = 0; half < 2; ++half) {
-    for (std::uint64_t trial = 0;; ++trial) {  // a point in the unit disc
-      std::uint64_t const n = (number << 20) + (std::uint64_t(half) << 18) + 2 * trial;
-      for (int k = 0; k < 2; ++k) found[2 * half + k] = 2 * detail::random_fraction(n + std::uint64_t(k)) - 1;
-      squares[half] = found[2 * half] * found[2 * half] + found[2 * half + 1] * found[2 * half + 1];
-      if (squares[half] < 1 && squares[half] > 0) break;
-    }
-  }
-  double const part = std::sqrt((1 - squares[0]) / squares[1]);
-  for (int k = 0; k < 4; ++k) rotation[k] = k < 2 ? found[k] : found[k] * part;
-}
 
 /// A clump in each of some spheres, of which x, y, z and the radii are given as by `fill`: with its centre of mass in
 /// the middle, as large as it fits, and turned at random, always the same for a seed below 2^24. `number` is that of
@@ -118,6 +101,17 @@ struct columns_of_clumps {
   }
 };
 
+/// Those behind the first `there` spheres of a simulation are free places.
+struct waiting_places {
+  template <class Simulation>
+  static void leave(Simulation& of, std::size_t there) {
+    if (there == of.size()) return;
+    check_parameter(Simulation::effects_type::makes, "set_clumps: clumps wait for emit, which is not in the scene");
+    if constexpr (Simulation::effects_type::makes) of.space_.fill(of.state_.at(alive{}) + there, 0, of.size() - there);
+    of.state_.placed = there;
+  }
+};
+
 /// Numbers in memory of a space.
 template <class T, class Space>
 buffer<T> copied_to(Space const& space, std::vector<T> const& from) {
@@ -136,16 +130,28 @@ void assign_from_host(Simulation& to, std::vector<T> const& values) {
 
 /// Puts clumps into a simulation that names `clumps`, in place of all particles: `set` with their spheres, those of one
 /// after those of the other. A shape of one sphere is a grain by itself, and all its bits are those of such a one.
-/// Radii that differ need `polydisperse`. Throws `error` if a shape is none, or a rotation is not of length 1, and what
-/// `set` throws. Allocates; waits. O(spheres).
+/// Radii that differ need `polydisperse`. The last `waiting` ones are not there yet: each is for one that `emit` makes,
+/// turned at random, with its shape and scale; all have as many spheres. Throws `error` if a shape is none, or a
+/// rotation is not of length 1, and what `set` throws. Allocates; waits. O(spheres).
 template <class Simulation>
-void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vector<placed_clump> const& placed) {
+void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vector<placed_clump> const& placed,
+                std::size_t waiting = 0) {
   using S = typename Simulation::scalar;
   for (auto const& shape : shapes) shape.check();
   detail::columns_of_clumps<S> all;
-  for (auto const& c : placed) {
-    detail::check_parameter(c.shape < shapes.size(), "set_clumps: the number of a shape is that of one of the list");
-    all.add(shapes[c.shape], c);
+  std::size_t there = 0, numbers = 0;  // spheres of those that do not wait, and of each one that does
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    detail::check_parameter(placed[i].shape < shapes.size(),
+                            "set_clumps: the number of a shape is that of one of the list");
+    clump_shape const& shape = shapes[placed[i].shape];
+    all.add(shape, placed[i]);
+    if (i + waiting < placed.size()) {
+      there = all.radii.size();
+    } else {
+      detail::check_parameter(numbers == 0 || numbers == shape.spheres.size(),
+                              "set_clumps: all clumps that wait have as many spheres");
+      numbers = shape.spheres.size();
+    }
   }
   auto const& radii = all.radii;
   std::size_t const n = radii.size();
@@ -165,6 +171,7 @@ void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vec
   detail::assign_from_host<clump_rotation>(to, all.rotations);
   detail::assign_from_host<clump_inertia>(to, all.inertias);
   detail::assign_from_host<in_clump>(to, all.first);
+  detail::waiting_places::leave(to, there);
 }
 
 }  // namespace collide

@@ -221,7 +221,7 @@ class Simulation:
 
     def set_clumps(
         self, shapes: Union[ClumpShape, Iterable[ClumpShape]], centres: Any, rotations: Any = (1, 0, 0, 0),
-        velocities: Any = (0, 0, 0), angular_velocities: Any = (0, 0, 0), *, shape: Any = 0, scale: Any = 1,
+        velocities: Any = (0, 0, 0), angular_velocities: Any = (0, 0, 0), *, shape: Any = 0, scale: Any = 1, waiting: int = 0,
     ) -> None:
         """Puts n clumps in place of all particles, with `clumps` in the list: those of before are gone, and the time is 0.
         The columns have a row for each sphere, those of a clump one after the other; ``clump_rotation`` and others of a
@@ -234,6 +234,7 @@ class Simulation:
         angular_velocities  (n, 3) or one: radians per time
         shape               (n,) or one: which of ``shapes``
         scale               (n,) or one: by how much larger than their shapes they are, above 0
+        waiting             so many of the last are not there: `emit` makes them; each has as many spheres
         """
         shapes = _listed("shapes", shapes, ClumpShape, "collide.ClumpShape(centres, radii)")
         x = table("centres", centres, None, 3)
@@ -242,7 +243,8 @@ class Simulation:
             ("angular_velocities", angular_velocities, 3), ("scale", scale, 1))]
         wrong = not numpy.isin(parts[0], numpy.arange(len(shapes))).all()
         refuse(wrong, "shape", f"expected whole numbers from 0 to {len(shapes) - 1}")
-        self._replace("set_clumps", [n for s in shapes for n in s._numbers], numpy.hstack(parts).ravel().tolist())
+        self._replace("set_clumps", [n for s in shapes for n in s._numbers], numpy.hstack(parts).ravel().tolist(),
+                      whole("waiting", waiting, 0, len(x)))
         self._is_set = True
 
     def step(self, dt: float) -> None:

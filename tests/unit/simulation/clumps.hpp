@@ -12,6 +12,7 @@
 #include <collide/effects/contact_forces.hpp>
 #include <collide/effects/contact_work.hpp>
 #include <collide/effects/drag.hpp>
+#include <collide/effects/emit.hpp>
 #include <collide/effects/external_forces.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/integrators.hpp>
@@ -66,6 +67,13 @@ class clumps_in {
  private:
   placed<S> corners_;
 };
+
+template <class Simulation>
+auto state_of_clumps(Simulation const& of) {
+  return std::tuple(of.template to_host<position>(), of.template to_host<velocity>(),
+                    of.template to_host<collide::angular_velocity>(), of.template to_host<collide::clump_centre>(),
+                    of.template to_host<collide::clump_momentum>(), of.template to_host<collide::clump_rotation>());
+}
 
 inline clump_shape dumbbell(double apart, double radius) {
   return collide::shape_of_clump({ball{{0, 0, 0}, radius}, ball{{apart, 0, 0}, radius}});
@@ -376,6 +384,91 @@ void check_flow_of_clumps(Space const& space) {
   CHECK(some.centre(9) != gone);
 }
 
+/// A source makes clumps that wait for it, turned at random; those of one sphere have the bits of spheres. What a sink
+/// takes leaves its place to the next.
+template <class S>
+struct fountain {
+  using law = granular_contact<hertz, mindlin>;
+  template <class Space>
+  using scene = clumps_in<Space, S, gravity, law, collide::emit, collide::absorbing_box, collide::polydisperse>;
+
+  template <class Space>
+  static scene<Space> make(Space const& space) {
+    world<S> w;
+    add_floor(w, 1, 2);
+    collide::emit source;
+    source.rate = 40, source.radius = 0.3;
+    source.source.position[2] = 3, source.source.half_width = 0.5, source.source.velocity[2] = -2;
+    return scene<Space>(space, w, gravity{}, law_of<law>(2e5, 0.4, 0.5), source, {{-9, -9, -9}, {9, 9, -1}}, {});
+  }
+};
+template <class S, class Space>
+void check_source_of_clumps(Space const& space) {
+  auto reference = fountain<S>::make(collide::host(1));
+  auto found = fountain<S>::make(space), loaded = fountain<S>::make(space);
+  placed_clump c = clump_at(0, 0, 0.4);
+  c.scale = 0.5;
+  std::vector<placed_clump> const all(21, c);  // one is there
+  collide::set_clumps(reference.made, {potato()}, all, 20);
+  collide::set_clumps(found.made, {potato()}, all, 20);
+  CHECK(found.made.size() == 63);
+  S const dt = S(5e-4);
+  auto const born = [](auto const& of) {
+    auto const there = of.made.template to_host<collide::alive>();
+    for (std::size_t i = 0; i < there.size(); ++i) CHECK(int(there[i]) == int(there[i / 3 * 3]));
+    return std::count(there.begin(), there.end(), 1);
+  };
+  CHECK(born(found) == 3);
+  found.made.steps(200, dt);
+  CHECK(born(found) == 3 * 5);
+  auto const q = found.made.template to_host<collide::clump_rotation>();
+  for (std::size_t i = 12; i < 48; i += 12) CHECK(q[i] != q[12 + (i == 12 ? 12 : 0)]);
+  reference.made.steps(3000, dt);
+  std::stringstream file;
+  collide::save(found.made, file);
+  collide::load(loaded.made, file);
+  found.made.steps(2800, dt);
+  loaded.made.steps(2800, dt);
+  CHECK(found.made.births().due == 60);
+  CHECK(born(found) > 3 * 5);
+  CHECK(state_of_clumps(found.made) == state_of_clumps(reference.made));
+  CHECK(state_of_clumps(loaded.made) == state_of_clumps(reference.made));
+  double const apart = (found.template read<position>(0) - found.template read<position>(2)).norm();
+  for (std::size_t i = 0; i < 63; i += 3)
+    CHECK((found.template read<position>(i) - found.template read<position>(i + 2)).norm() ==
+          doctest::Approx(apart).epsilon(1e-5));
+}
+template <class Space>
+void check_source_of_single_spheres(Space const& space) {
+  using S = double;
+  auto found = fountain<S>::make(space);
+  collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, velocity_verlet, gravity, fountain<S>::law,
+                      collide::emit, collide::absorbing_box, collide::polydisperse>
+      spheres(space, velocity_verlet{}, gravity{}, found.made.template effect<fountain<S>::law>(),
+              found.made.template effect<collide::emit>(), found.made.template effect<collide::absorbing_box>(),
+              collide::polydisperse{});
+  world<S> w;
+  add_floor(w, 1, 2);
+  w.radius = 0.3;
+  w.particle(0, 0, 0.4);
+  placed<S> const corners(space, w.corners), centres(space, w.centres);
+  spheres.set_mesh(collide::triangle_soup(corners.data(), corners.size() / 9));
+  spheres.set(collide::spheres_xyz(centres.data(), 1, w.radius), nullptr, 21);
+  collide::set_clumps(found.made, {collide::shape_of_clump({ball{{0, 0, 0}, 0.3}})},
+                      std::vector<placed_clump>(21, clump_at(0, 0, 0.4)), 20);
+  spheres.steps(2000, 5e-4);
+  found.made.steps(2000, 5e-4);
+  CHECK(spheres.births().due == 40);
+  CHECK(found.made.template to_host<collide::alive>() == spheres.template to_host<collide::alive>());
+  CHECK(found.made.template to_host<position>() == spheres.template to_host<position>());
+  CHECK(found.made.template to_host<velocity>() == spheres.template to_host<velocity>());
+  found.made.template effect<collide::emit>().only_where_free = true;
+  CHECK_THROWS_WITH_AS(found.made.step(5e-4), doctest::Contains("only_where_free"), collide::error);
+  clumps_in<Space, S, fountain<S>::law> none(space, {}, law_of<fountain<S>::law>(1e5, 0.5, 0.3));
+  CHECK_THROWS_WITH_AS(collide::set_clumps(none.made, {dumbbell(1, 0.2)}, {clump_at(0, 0, 0)}, 1),
+                       doctest::Contains("emit"), collide::error);
+}
+
 /// Momentum and angular momentum of clumps that meet each other close.
 template <class Law, class Space>
 void check_momentum_of_clumps(Space const& space) {
@@ -416,13 +509,6 @@ void check_momentum_of_clumps(Space const& space) {
 }
 
 // ---- beside other features
-
-template <class Simulation>
-auto state_of_clumps(Simulation const& of) {
-  return std::tuple(of.template to_host<position>(), of.template to_host<velocity>(),
-                    of.template to_host<collide::angular_velocity>(), of.template to_host<collide::clump_centre>(),
-                    of.template to_host<collide::clump_momentum>(), of.template to_host<collide::clump_rotation>());
-}
 
 /// A clump of spheres that overlap presses on a body with the weight of its union, and goes with a belt.
 template <class S, class Space>

@@ -121,6 +121,12 @@ TEST_CASE("where features meet: forces on spheres of clumps turn these, which fl
   tests::check_flow_of_clumps(blocks());
 }
 
+TEST_CASE("where features meet: a source makes clumps, and where a sink takes them others come") {
+  tests::check_source_of_clumps<double>(host(1));
+  tests::check_source_of_clumps<float>(blocks());
+  tests::check_source_of_single_spheres(host(1));
+}
+
 TEST_CASE("where features meet: the energy of clumps is accounted for, and their stress holds their weight") {
   tests::check_balance_of_clumps(host(1));
   tests::check_stress_of_clumps(host(1));

@@ -15,6 +15,9 @@ class checkpoint;
 template <class Simulation>
 class part_of_simulation;
 
+/// Leaves places to clumps that wait; see place_clumps.hpp.
+struct waiting_places;
+
 /// Sums over the contacts of a simulation's particles with the mesh; see energy.hpp.
 template <class Detector, class... Effect>
 struct mesh_contacts_of;

@@ -157,16 +157,16 @@ constexpr bool check_beside_clumps() {
   using motion = columns<position, velocity, angular_velocity>;
   using written = writes_of<E>;
   constexpr bool is_known = std::is_same<E, clumps>::value || std::is_same<E, periodic_box>::value || sees_clumps<E> ||
-                            follows_pair_contacts<E>;
+                            follows_pair_contacts<E> || is_source<E>;
   constexpr bool moves =
       intersection_of<motion, written>::size != 0 &&
       (has_end_step<E, S>::value || has_begin_step<E, Space, particle_state<S, typename Effects::all>, S>);
-  static_assert(is_known || !contains<written, alive>, "collide: clumps: emit makes single spheres, not clumps");
   static_assert(is_known || !(moves || asks_forces<E>),
                 "collide: clumps: an effect that moves particles when a step begins or ends, such as box_walls, does "
                 "not know them: take a mesh in place of box_walls");
-  static_assert(is_known || !has_is_inactive<E, S>::value,
-                "collide: clumps: sleep leaves out single spheres, not clumps");
+  static_assert(is_known || !(has_is_inactive<E, S>::value || contains<written, alive>),
+                "collide: clumps: sleep, and effects that make or leave out particles, do so with single spheres, not "
+                "with clumps");
   return true;
 }
 template <class Space, class S, class Effects, class... E>
