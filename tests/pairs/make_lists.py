@@ -78,8 +78,8 @@ FOUND = [
 # Behind all others, of effects that only go with few: they are in no pair that must be covered.
 LAST = [
     ("velocity_verlet gravity granular_contact wear contact_work mesh_forces reaction polydisperse lost", ("moving", "karabassi", "double")),
-    ("velocity_verlet gravity granular_contact clumps contact_work mesh_forces reaction pair_forces lost", ("moving", "karabassi", "double")),
-    ("velocity_verlet gravity drag wind external_forces granular_contact wear clumps mass_flow absorbing_box polydisperse lost_motion mesh_forces periodic_box",
+    ("velocity_verlet gravity granular_contact clumps contact_work mesh_forces reaction pair_forces lost periodic_box", ("moving", "karabassi", "double")),
+    ("velocity_verlet gravity wind external_forces granular_contact wear clumps mass_flow absorbing_box polydisperse lost_motion mesh_forces",
      ("driven", "karabassi", "float")),
     ("sleep gravity emit granular_contact wear contact_work lost reaction periodic_box", ("driven", "karabassi", "float")),
     ("gravity sphere_contact contact_work polydisperse periodic_box lost", ("fixed", "karabassi", "float")),

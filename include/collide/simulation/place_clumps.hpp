@@ -101,7 +101,7 @@ struct columns_of_clumps {
   }
 };
 
-/// Those behind the first `there` spheres of a simulation are free places.
+/// Makes free places of all spheres behind the first `there` of a simulation.
 struct waiting_places {
   template <class Simulation>
   static void leave(Simulation& of, std::size_t there) {

@@ -182,7 +182,7 @@ struct field_sums {
   }
 };
 
-/// Of each sphere, the grain that it is of: itself, or a clump.
+/// The grain of each sphere: itself, or a clump.
 template <class Detector, class... Effect>
 struct grains_of_spheres {
   using particles = particles_on_host<Detector, Effect...>;
@@ -326,7 +326,7 @@ std::vector<double> normal_forces(simulation<Detector, Effect...> const& of) {
   return found;
 }
 
-/// The means of fields in a box, of a scene with `granular_contact`: grains count where their centres are, forces by
+/// The means of fields in a box, of a scene with `granular_contact`: grains count where their centres are, those of clumps their centres of mass, forces by
 /// the part of the line between centres that is in the box, those of the mesh where the grain's centre is. Forces are
 /// those where grains are, with velocities as they are. In a periodic box a line counts where its first grain is. Of
 /// `local()` of ranks it is that of the rank's own grains. Waits, and copies columns to the host. O(n log n).
