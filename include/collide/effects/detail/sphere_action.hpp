@@ -12,7 +12,6 @@ template <class P>
 struct meeting_sphere {
   vec3<P> position, velocity, spin;
   P radius, density;
-  P of_clump;  ///< the mass of its clump over its own
 };
 
 /// The action of another sphere on a sphere: a force, the torque of its tangential part for an arm of 1, and another
