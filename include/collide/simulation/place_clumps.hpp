@@ -101,17 +101,6 @@ struct columns_of_clumps {
   }
 };
 
-/// Makes free places of all spheres behind the first `there` of a simulation.
-struct waiting_places {
-  template <class Simulation>
-  static void leave(Simulation& of, std::size_t there) {
-    if (there == of.size()) return;
-    check_parameter(Simulation::effects_type::makes, "set_clumps: clumps wait for emit, which is not in the scene");
-    if constexpr (Simulation::effects_type::makes) of.space_.fill(of.state_.at(alive{}) + there, 0, of.size() - there);
-    of.state_.placed = there;
-  }
-};
-
 /// Numbers in memory of a space.
 template <class T, class Space>
 buffer<T> copied_to(Space const& space, std::vector<T> const& from) {
@@ -171,7 +160,11 @@ void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vec
   detail::assign_from_host<clump_rotation>(to, all.rotations);
   detail::assign_from_host<clump_inertia>(to, all.inertias);
   detail::assign_from_host<in_clump>(to, all.first);
-  detail::waiting_places::leave(to, there);
+  if (there == n) return;
+  detail::check_parameter(Simulation::effects_type::makes,
+                          "set_clumps: clumps wait for emit, which is not in the scene");
+  if constexpr (Simulation::effects_type::makes) to.space().fill(to.template data<alive>() + there, 0, n - there);
+  to.internals().particles.placed = there;
 }
 
 }  // namespace collide

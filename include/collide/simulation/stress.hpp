@@ -218,8 +218,7 @@ void for_each_load(simulation<Detector, Effect...> const& of, Sink& sink) {
   law_type const& law = of.template effect<law_type>();
   particles_on_host<Detector, Effect...> const all(of);
   grains_of_spheres<Detector, Effect...> const grains(of, all);
-  auto const on_spheres =
-      mesh_contacts_of<Detector, Effect...>::template sums<mesh_load>(of, load_of_mesh<law_type>{law});
+  auto const on_spheres = sums_over_mesh_contacts<mesh_load>(of, load_of_mesh<law_type>{law});
   std::vector<mesh_load> loads(of.size());
   for (std::size_t i = 0; i < of.size(); ++i)
     loads[grains.first[i]].add(on_spheres[i], 1 / static_cast<double>(all.clump_masses[i]), grains.arms[i]);
@@ -326,10 +325,11 @@ std::vector<double> normal_forces(simulation<Detector, Effect...> const& of) {
   return found;
 }
 
-/// The means of fields in a box, of a scene with `granular_contact`: grains count where their centres are, those of clumps their centres of mass, forces by
-/// the part of the line between centres that is in the box, those of the mesh where the grain's centre is. Forces are
-/// those where grains are, with velocities as they are. In a periodic box a line counts where its first grain is. Of
-/// `local()` of ranks it is that of the rank's own grains. Waits, and copies columns to the host. O(n log n).
+/// The means of fields in a box, of a scene with `granular_contact`: grains count where their centres are, those of
+/// clumps their centres of mass, forces by the part of the line between centres that is in the box, those of the mesh
+/// where the grain's centre is. Forces are those where grains are, with velocities as they are. In a periodic box a
+/// line counts where its first grain is. Of `local()` of ranks it is that of the rank's own grains. Waits, and copies
+/// columns to the host. O(n log n).
 template <class Detector, class... Effect>
 grain_fields stress(simulation<Detector, Effect...> const& of, double const (&lower)[3], double const (&upper)[3]) {
   for (int k = 0; k < 3; ++k) detail::check_parameter(lower[k] < upper[k], "stress: each side of the box is above 0");
