@@ -438,6 +438,42 @@ void check_source_of_clumps(Space const& space) {
     CHECK((found.template read<position>(i) - found.template read<position>(i + 2)).norm() ==
           doctest::Approx(apart).epsilon(1e-5));
 }
+/// A few clumps, in a scene with all effects that know them, have the bits of the host.
+template <class S, class Space>
+auto end_of_few_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  world<S> w;
+  add_floor(w, 1, 1);
+  collide::emit source;
+  source.rate = 100, source.radius = 0.3;
+  source.source.position[2] = 1.2, source.source.half_width = 0.5, source.source.velocity[2] = -2;
+  collide::flow_sums sums(space, 1e-6);
+  auto const through = sums.through({0, 0, 0.7}, {0, 0, -1}, collide::one_density{1000});
+  clumps_in<Space, S, gravity, law, collide::contact_work<>, collide::emit, collide::external_forces<>,
+            collide::absorbing_box, collide::mass_flow<>, collide::polydisperse, collide::periodic_box>
+      some(space, w, gravity{}, law_of<law>(2e5, 0.4, 0.5), {{1000}}, source, {{1000}}, {{-9, -9, -9}, {9, 9, 0.2}},
+           through, {}, {{-2, -2, -2}, {2, 2, 2}});
+  placed_clump c = clump_at(0, 0, 0.3);
+  c.scale = 0.5;
+  collide::set_clumps(some.made, {potato()}, std::vector<placed_clump>(11, c), 10);
+  std::vector<S> forces(3 * some.made.size(), S(20));
+  placed<S> const there(space, forces);
+  some.made.template assign<collide::external_force>(there.data());
+  for (int k = 0; k < 100; ++k) some.made.step(S(1e-3));
+  auto const flow = sums.read(space);
+  return std::tuple(state_of_clumps(some.made), some.made.template to_host<collide::alive>(),
+                    some.made.template to_host<collide::normal_work>(),
+                    some.made.template to_host<collide::clump_push>(), flow.particles, flow.mass);
+}
+template <class S, class Space>
+void check_few_clumps(Space const& space) {
+  auto const here = end_of_few_clumps<S>(collide::host(1)), there = end_of_few_clumps<S>(space);
+  CHECK(here == there);
+  CHECK(std::count(std::get<1>(here).begin(), std::get<1>(here).end(), 1) > 3);
+  auto const& work = std::get<2>(here);
+  CHECK(std::count_if(work.begin(), work.end(), [](double x) { return x != 0; }) > 3);
+}
+
 template <class Space>
 void check_source_of_single_spheres(Space const& space) {
   using S = double;

@@ -125,6 +125,7 @@ TEST_CASE("where features meet: a source makes clumps, and where a sink takes th
   tests::check_source_of_clumps<double>(host(1));
   tests::check_source_of_clumps<float>(blocks());
   tests::check_source_of_single_spheres(host(1));
+  tests::check_few_clumps<double>(blocks());
 }
 
 TEST_CASE("where features meet: the energy of clumps is accounted for, and their stress holds their weight") {
