@@ -24,7 +24,7 @@ constexpr double size = 0.012, duration = 0.008;
 constexpr double half = 0.12;  // of the belts' width
 
 constexpr auto make = [](auto space, io::film const& film) {
-  return conveyor<decltype(space)>(space, emit{film.rate(), {{-0.48, 0, 0.3}, 0.07, {0, 0, -0.5}, 0.1}}, gravity{},
+  return conveyor<decltype(space)>(space, emit{film.rate(), {{-0.48, 0, 0.22}, 0.06, {0, 0, -0.3}, 0.05}}, gravity{},
                                    sphere_contact::from_restitution(0.3, duration, size, 2500, 0.5), bounce{0.2},
                                    friction{0.7, 0.6}, moving_bodies<>{});
 };

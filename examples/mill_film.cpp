@@ -155,22 +155,13 @@ int main(int argc, char** argv) try {
   auto const spheres = upload(space, spheres_xyz(grains.centres.data(), wanted, grains.radii.data()));
   buffer<double> velocities;
   space.copy_from_host(velocities.reserve(space.resource(), moving.size()), moving.data(), moving.size());
-  std::fprintf(stderr, "sent after %.1f s\n", seconds());
   made.reserve(2 * wanted);  // for lists of neighbours
   made.set(spheres.view(), velocities.data());
-  space.synchronize();
-  std::fprintf(stderr, "set after %.1f s\n", seconds());
   write_vtk_mesh(folder + "walls.vtp", mesh);
   double const ready = seconds();
   write_frame(folder + "begin.vtp", made);
   double const per_frame = seconds() - ready;
   std::fprintf(stderr, "ready after %.1f s, a frame takes %.2f s\n", ready, per_frame);
-  for (int k = 0; k < 2; ++k) {
-    double const start = seconds();
-    made.step(1e-9);
-    space.synchronize();
-    std::fprintf(stderr, "step %d took %.3f s\n", k, seconds() - start);
-  }
 
   // a row of the curve, and of the last twelfth of a turn a frame, after so many steps
   int const rows = lifters * frames;
@@ -188,12 +179,13 @@ int main(int argc, char** argv) try {
     double const start = seconds();
     made.steps(every, dt);
     space.synchronize();
-    spent += seconds() - start;
-    if (seconds() + frames * (spent / k + per_frame) > most_seconds) last = std::min(last, k + frames);
+    double const took = seconds() - start;
+    spent += took;
+    if (seconds() + frames * (took + per_frame) > most_seconds) last = std::min(last, k + frames);
     std::size_t const steps = every * static_cast<std::size_t>(k);
-    if (k % frames == 1)
+    if (k % frames == 1 || k == last)
       std::fprintf(stderr, "%d of %d rows after %.1f s, %.1f steps a second\n", k, last, seconds(),
-                   static_cast<double>(every) / (seconds() - start));
+                   static_cast<double>(every) / took);
     double const torque = -forces.read(space)[0].angular[1] / row;
     curve << made.time() << "," << static_cast<double>(k) / rows << "," << torque << "," << torque * rate << std::endl;
     if (k <= last - frames) continue;
