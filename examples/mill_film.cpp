@@ -172,7 +172,7 @@ int main(int argc, char** argv) try {
   std::ofstream curve(folder + "torque.csv");
   curve << "time,turns,torque,power\n";
   std::vector<vtk_frame> film;
-  char line[512];
+  char line[512] = "";
   double spent = 0;
   for (int k = 1; k <= last; ++k) {
     forces.clear(space);
