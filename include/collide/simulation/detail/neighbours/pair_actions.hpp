@@ -290,7 +290,8 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
       row_of<S> v = load_row(motion), spin = load_row(motion + 4);
       meeting_sphere<S> self;
       self.radius = places.spheres[i].radius, self.density = motion[3];
-      S const impulse = this->dt / effect_type::mass_of(self);
+      particle_access<effect_type, interaction> const seen(p.self);
+      S const impulse = this->dt * effect_type::template of_clump<S>(seen) / effect_type::mass_of(self);
       auto const take = [&] {
         for (std::uint32_t k = 0; k < size; ++k)
           effect.give(v, spin, items.actions[acting[k] >> 1].on((acting[k] & 1) != 0), self.radius, impulse);
@@ -323,6 +324,8 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
     interaction p = this->order.load(i);
     S const* const numbers = items.motions[i].numbers;
     p[velocity{}] = vec3<S>(numbers[0], numbers[1], numbers[2]);
+    if constexpr (contains<typename interaction::list, clump_mass>)
+      p[clump_mass{}] = this->state.at(clump_mass{})[this->order.numbers[i]];
     if constexpr (contains<typename interaction::list, angular_velocity>)
       p[angular_velocity{}] = vec3<S>(numbers[4], numbers[5], numbers[6]);
     return p;
