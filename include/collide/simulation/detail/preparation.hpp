@@ -104,8 +104,11 @@ class preparation {
       }
     }
     if constexpr (effects_type::any_pair_contact) s_.neighbours.reserve(s_.space, particles);
-    if constexpr (state_type::has_cell_order)
-      s_.order.reserve(resource, particles, std::max(decltype(s_.memory)::widest, state_type::surfaces_type::widest));
+    if constexpr (state_type::has_cell_order) {
+      s_.order.names.reserve(resource, particles);
+      s_.order.moved.reserve(resource,
+                             particles * std::max(decltype(s_.memory)::widest, state_type::surfaces_type::widest));
+    }
     if constexpr (effects_type::overlaps) {
       s_.surfaces.reserve(resource, particles);
       s_.is_pressing_known = false;

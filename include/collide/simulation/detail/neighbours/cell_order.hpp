@@ -13,32 +13,27 @@
 namespace collide::detail {
 
 /// The order in which a simulation's particles lie: that of their numbers, or another one.
-class cell_order {
- public:
-  /// Takes all memory for `n` particles of which no column has more than `widest` bytes.
-  void reserve(std::pmr::memory_resource* resource, std::size_t n, std::size_t widest) {
-    names_.reserve(resource, n);
-    moved_.reserve(resource, n * widest);
-  }
-  std::size_t bytes() const { return names_.bytes() + moved_.bytes(); }
+struct cell_order {
+  buffer<id> names;         ///< the number of each
+  buffer<std::byte> moved;  ///< room for any column
 
   /// Puts the particle that lies at from[i] at i. `surfaces` is what they remember of the mesh.
   template <class Space, class State, class Surfaces>
   void take(Space const& space, State& state, Surfaces const& surfaces, id const* from) {
     std::size_t const n = state.size;
-    if (state.names == nullptr) space.for_each(n, [&](std::size_t i) { names_.data()[i] = static_cast<id>(i); });
-    state.names = names_.data();
-    move(space, names_.data(), from, n);
+    if (state.names == nullptr) space.for_each(n, [&](std::size_t i) { names.data()[i] = static_cast<id>(i); });
+    state.names = names.data();
+    move(space, names.data(), from, n);
     move_all(space, state, surfaces, from);
   }
   /// Puts all back in the order of numbers.
   template <class Space, class State, class Surfaces>
   void put_back(Space const& space, State& state, Surfaces const& surfaces) {
     std::size_t const n = state.size;
-    id* const place_of = reinterpret_cast<id*>(moved_.data());  // of each number
-    space.for_each(n, [&](std::size_t i) { place_of[names_.data()[i]] = static_cast<id>(i); });
-    std::copy_n(place_of, n, names_.data());
-    move_all(space, state, surfaces, names_.data());
+    id* const place_of = reinterpret_cast<id*>(moved.data());  // of each number
+    space.for_each(n, [&](std::size_t i) { place_of[names.data()[i]] = static_cast<id>(i); });
+    std::copy_n(place_of, n, names.data());
+    move_all(space, state, surfaces, names.data());
     state.names = nullptr;
   }
 
@@ -55,13 +50,10 @@ class cell_order {
   };
   template <class Space, class T>
   void move(Space const& space, T* values, id const* from, std::size_t n) const {
-    T* const moved = reinterpret_cast<T*>(moved_.data());
-    space.for_each(n, [=](std::size_t i) { moved[i] = values[from[i]]; });
-    space.for_each(n, [=](std::size_t i) { values[i] = moved[i]; });
+    T* const copy = reinterpret_cast<T*>(moved.data());
+    space.for_each(n, [=](std::size_t i) { copy[i] = values[from[i]]; });
+    space.for_each(n, [=](std::size_t i) { values[i] = copy[i]; });
   }
-
-  buffer<id> names_;  ///< the number of each
-  buffer<std::byte> moved_;
 };
 
 }  // namespace collide::detail

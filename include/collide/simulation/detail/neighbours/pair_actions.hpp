@@ -173,8 +173,9 @@ struct meet_once {
 
   static constexpr unsigned remembered_width = unsigned(contact_values<S, remembered>::width);
   /// Numbers of a record as they are read: it is as wide as a multiple of four if it has more than two.
-  static constexpr unsigned record_width = remembered_width > 2 ? (remembered_width + 3) / 4 * 4
-                                                                : max(remembered_width, 1u);
+  static constexpr unsigned record_width = remembered_width > 2    ? (remembered_width + 3) / 4 * 4
+                                           : remembered_width == 0 ? 1
+                                                                   : remembered_width;
 
   template <class Effect, class Material>
   COLLIDE_HD_INLINE void meet_together(Effect const& effect, std::uint32_t const* found, std::uint32_t size,
