@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include <collide/broad/detail/bucket/cell_index.hpp>
 #include <collide/broad/detail/bucket/sorted_spheres.hpp>
@@ -51,6 +52,16 @@ struct bucket {
 
 namespace detail {
 
+template <class Space>
+using space_is_captured = decltype(std::declval<Space const&>().is_captured());
+
+/// True if what is put on the space's stream is kept for later, as in a CUDA graph.
+template <class Space>
+bool is_captured([[maybe_unused]] Space const& space) {
+  if constexpr (is_valid<space_is_captured, Space>) return space.is_captured();
+  return false;
+}
+
 /// Which way round a query goes: spheres look for triangles in the cells, or triangles look for spheres that are sorted
 /// into the cells.
 enum class query_order { sphere_major, triangle_major };
@@ -87,13 +98,14 @@ class bucket::index {
     cells_.measure(space);
   }
 
-  /// Says that one grid for spheres up to `radius` serves until the next build; the next query makes it, as it knows
-  /// better what it costs. Where spheres are sorted into the cells it does nothing.
+  /// Says that grids for spheres up to `radius` serve until the next build; the next query makes them, as it knows
+  /// better what they cost: several if its spheres are many and of many radii. Where spheres are sorted into the cells
+  /// it does nothing.
   template <class Space>
   void prepare(Space&, bucket const& options, S radius) {
     if (bins_spheres<Space>(options)) return;
     bool const serves = cells_.is_measured() && detail::is_valid_radius(radius) && detail::is_finite(radius);
-    given_ = serves ? detail::wanted_grids<S>{radius, 1} : detail::wanted_grids<S>{};
+    given_ = serves ? detail::wanted_grids<S>{radius, 1, false, radius} : detail::wanted_grids<S>{};
   }
 
   /// Makes the grids that the spheres need, unless they are there.
@@ -196,7 +208,23 @@ class bucket::index {
         plan.makes_grids = plan.makes_grids || cells_.grids().spheres < plan.spheres;
       }
     }
+    if constexpr (!bucket_tuning<Space>::bins_spheres && !detail::serves_steps<Space>) {
+      if (has_grids && options.cell_width == 0) plan_for_many(space, spheres.size(), plan);
+    }
     return plan;
+  }
+
+  /// Narrower cells, which pay for many queries: for those of a mesh that has been asked twice, in the memory that there
+  /// is, and at once where the host waits for the number of entries, as these cost the least there. Not while a graph is
+  /// captured, which would make them again and again.
+  template <class Space>
+  void plan_for_many(Space& space, std::size_t spheres, detail::query_plan<S>& plan) const {
+    if (mesh_.size() > detail::cell_index<S>::max_without_readback) {
+      plan.spheres = 8 * spheres;
+    } else if (queries_ >= few_queries && !detail::is_captured(space)) {
+      plan.spheres = 16 * spheres;
+      plan.makes_grids = plan.makes_grids || cells_.grids().spheres < plan.spheres / 4;
+    }
   }
 
   /// The plan of a query of spheres that move: they are sorted, too, if there are many, of one radius, and none moves
@@ -224,7 +252,13 @@ class bucket::index {
   template <class Space, class Spheres>
   detail::query_plan<S> plan_grids(Space&, Spheres const& spheres, bool whole_boxes) {
     detail::wanted_grids<S> wanted = given_.value_or(detail::wanted_grids<S>{});
-    if (!given_) {
+    auto const& asked = cells_.grids().asked;
+    if (given_ && wanted.max_count != 0 && asked.by_radii() && asked.given == wanted.given) {
+      wanted = asked;  // they serve any radii
+    } else if (given_ && wanted.max_count != 0 && !spheres.one_radius()) {
+      wanted.max_count = cells_.template max_grid_count<Space>(spheres.size());
+      if (wanted.max_count > 1) wanted.reach = -1;
+    } else if (!given_) {
       S const radius = spheres.common_radius();
       if (!spheres.one_radius()) {
         wanted = {-1, cells_.template max_grid_count<Space>(spheres.size())};
@@ -236,7 +270,7 @@ class bucket::index {
     detail::query_plan<S> plan;
     plan.makes_grids = cells_.is_measured() && wanted.max_count != 0 && !cells_.grids().asked.serve(wanted);
     plan.grids = plan.makes_grids ? wanted : cells_.grids().asked;
-    plan.asks_radii = cells_.grids().count != 0 && plan.grids.reach < 0;
+    plan.asks_radii = cells_.grids().count != 0 && plan.grids.by_radii() && !given_;
     return plan;
   }
 

@@ -9,7 +9,7 @@ TEST_CASE("reaches: spheres whose radii change have the pairs of all pairs, on t
 }
 
 TEST_CASE("reaches: queries of spheres of many radii can be captured in a graph, and follow radii that change") {
-  tests::many_radii const scene(200, 1500, 1000);
+  tests::many_radii const scene(200, 8000, 1000);
   cudaStream_t stream = nullptr;
   collide::cuda_check(cudaStreamCreate(&stream), "cudaStreamCreate");
   {

@@ -133,7 +133,7 @@ struct resolve_deferred {
 
   /// How far a thread has gone through the candidates of a sphere.
   struct progress {
-    std::size_t sphere;
+    std::size_t number;  ///< of the sphere
     typename Lookup::cursor at;
     typename Lookup::range range;
     std::uint32_t k;     ///< how many of the range
@@ -167,7 +167,7 @@ struct resolve_deferred {
 
   template <class Open>
   COLLIDE_HD_INLINE void start(Open const& open, progress& p, std::size_t sphere) const {
-    p.sphere = sphere;
+    p.number = sphere;
     p.range.count = p.k = 0, p.seen = 0;
     if (sphere < pipeline.spheres.size()) p.at = open.begin(pipeline.spheres[sphere]);
   }
@@ -175,15 +175,15 @@ struct resolve_deferred {
   /// Goes on to the next hit that the first pass has not written; false if there is none.
   template <class Open>
   COLLIDE_HD_INLINE bool find_next(Open const& open, progress& p, std::size_t stride, pair& found) const {
-    for (; p.sphere < pipeline.spheres.size(); start(open, p, p.sphere + stride)) {
-      auto const shape = pipeline.spheres[p.sphere];
-      id number;
-      while (next_candidate(open, shape, p, number)) {
-        triangle<S> const t = pipeline.mesh[number];
+    for (; p.number < pipeline.spheres.size(); start(open, p, p.number + stride)) {
+      auto const shape = pipeline.spheres[p.number];
+      id candidate;
+      while (next_candidate(open, shape, p, candidate)) {
+        triangle<S> const t = pipeline.mesh[candidate];
         // guard: first-step
         if (filter<NarrowPhase>(t, shape) != verdict::uncertain) continue;
-        if (!resolve<NarrowPhase>(t, shape) || !is_first(open, shape, p, number)) continue;
-        found = {static_cast<id>(p.sphere), number};
+        if (!resolve<NarrowPhase>(t, shape) || !is_first(open, shape, p, candidate)) continue;
+        found = {static_cast<id>(p.number), candidate};
         return true;
       }
     }
@@ -207,7 +207,7 @@ struct resolve_deferred {
   COLLIDE_HD_INLINE bool is_first(Open const& open, Sphere const& shape, progress const& here, id number) const {
     if constexpr (is_discrete<NarrowPhase, S>) return true;
     progress p;
-    start(open, p, here.sphere);
+    start(open, p, here.number);
     id other;
     while (next_candidate(open, shape, p, other) && other != number) {
     }

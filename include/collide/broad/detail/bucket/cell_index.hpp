@@ -45,13 +45,15 @@ struct wanted_grids {
   S reach = 0;               ///< of the only one; negative: as the radii of the spheres need it
   int max_count = 0;         ///< how many there may be
   bool whole_boxes = false;  ///< spheres that move look for triangles along their paths
+  S given = -1;              ///< how far the first of several reaches, if not as far as the radii need
 
   /// True if the radii of the spheres tell how far they reach.
   bool by_radii() const { return reach < 0; }
 
   /// True if these do for spheres that ask for `other`.
   bool serve(wanted_grids const& other) const {
-    return reach == other.reach && max_count >= other.max_count && whole_boxes == other.whole_boxes;
+    return reach == other.reach && max_count >= other.max_count && whole_boxes == other.whole_boxes &&
+           given == other.given;
   }
 };
 
@@ -139,6 +141,9 @@ class cell_index {
     return measures_.clear(space);
   }
 
+  /// For at most this many triangles the lists of cells get memory for the largest possible number of entries; for more triangles, or cells of a given width, the host reads the numbers back first.
+  static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
+
   /// False if the budget has no room for statistics, and so for grids.
   bool is_measured() const { return measures_.statistics.data() != nullptr; }
   grid_set<S> const& grids() const { return grids_; }
@@ -174,7 +179,7 @@ class cell_index {
     }
     if (anew) {
       forget_grids();  // until all is done: an exception leaves no half-made grid behind
-      plan_memory(space, max_count, max_count > 1 && !waits, all);
+      plan_memory(space, max_count, max_count > 1 && !waits, bucket_tuning<Space>::bins_spheres ? all : spheres.size());
     }
     grids_.are_filled = false;
     grids_.are_new = reaches == nullptr || waits ? nullptr : &reaches->are_new;
@@ -219,10 +224,7 @@ class cell_index {
   static constexpr std::size_t fixed_bytes =
       sizeof(mesh_statistics<S>) + max_grids * sizeof(grid<S>) + sizeof(measured_radii<S>);
 
-  /// For at most this many triangles the lists of cells get memory for the largest possible number of entries, and of
-  /// so many grids; for more triangles, or cells of a given width, the host reads the numbers back first.
-  static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
-  static constexpr int grids_without_readback = 4;
+  static constexpr int grids_without_readback = 4;  ///< of so many triangles
 
   /// True if boxes of triangles are kept: a thread that works alone asks them before it reads a triangle, and a
   /// simulation in each step. Where threads work together to read the mesh again takes less time.
@@ -247,7 +249,7 @@ class cell_index {
     }
     auto* const measured = radii_.reserve(space.resource(), 1);
     measure_radii_of(space, spheres, &measured->radii);
-    detail::choose_reaches<S> const kernel{&measured->radii, &measured->reaches, enough,
+    detail::choose_reaches<S> const kernel{&measured->radii, &measured->reaches, wanted.given, enough,
                                            fewest,           wanted.max_count,   anew};
     space.launch(1, kernel);
     return &measured->reaches;
