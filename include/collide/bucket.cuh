@@ -214,9 +214,9 @@ class bucket::index {
     return plan;
   }
 
-  /// Narrower cells, which pay for many queries: for those of a mesh that has been asked twice, in the memory that there
-  /// is, and at once where the host waits for the number of entries, as these cost the least there. Not while a graph is
-  /// captured, which would make them again and again.
+  /// Narrower cells, which pay for many queries: for those of a mesh that has been asked twice, in the memory that
+  /// there is, and at once where the host waits for the number of entries, as these cost the least there. Not while a
+  /// graph is captured, which would make them again and again.
   template <class Space>
   void plan_for_many(Space& space, std::size_t spheres, detail::query_plan<S>& plan) const {
     if (mesh_.size() > detail::cell_index<S>::max_without_readback) {

@@ -35,7 +35,8 @@ struct many_radii {
     }
     for (float const largest : {1.f, 8.f, 0.01f, 1.01f}) {
       auto& to = radii.emplace_back();
-      for (std::size_t i = 0; i < spheres; ++i) to.push_back(largest * std::pow(ratio, i % 4 == 0 ? -share(engine) : -1.f));
+      for (std::size_t i = 0; i < spheres; ++i)
+        to.push_back(largest * std::pow(ratio, i % 4 == 0 ? -share(engine) : -1.f));
     }
   }
 

@@ -63,3 +63,33 @@ TEST_CASE("reaches: a device that is asked for spheres of many radii is not wait
     if (given < 0) CHECK(reach_for(0) == first);
   }
 }
+
+TEST_CASE("again: the third query makes narrower cells where the others were, and waits for nothing") {
+  tests::many_radii const scene(200, 8000, 1000);
+  auto const spheres = collide::spheres_xyz(scene.centres.data(), scene.centres.size() / 3, 0.1f);
+  never_waits space;
+  collide::bucket::index<float> index;
+  index.build(space, {}, scene.mesh());
+  float widths[5];
+  std::uint32_t entries[5];
+  collide::detail::bucket_ref<float> made[5];
+  for (int k = 0; k < 5; ++k) {
+    index.prepare(space, {}, spheres);
+    made[k] = index.mesh_lookup();
+    widths[k] = made[k].grids[0].width;
+    entries[k] = *made[k].total;
+    CHECK(entries[k] <= made[k].capacity);
+    CHECK(made[k].entries == made[0].entries);  // so that a graph which was captured before stays valid
+    CHECK(made[k].lists == made[0].lists);
+    CHECK(made[k].occupied == made[0].occupied);
+    CHECK(made[k].total == made[0].total);
+    CHECK(made[k].grids == made[0].grids);
+    CHECK(made[k].grid_count == made[0].grid_count);
+    CHECK(made[k].capacity == made[0].capacity);
+  }
+  CHECK(widths[1] == widths[0]);
+  CHECK(widths[2] < widths[1]);
+  CHECK(entries[2] > entries[1]);
+  CHECK(widths[3] == widths[2]);
+  CHECK(widths[4] == widths[2]);
+}

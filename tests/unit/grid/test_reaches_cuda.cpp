@@ -8,6 +8,12 @@ TEST_CASE("reaches: spheres whose radii change have the pairs of all pairs, on t
   tests::check_changing_radii(collide::cuda_shared());
 }
 
+TEST_CASE("few: spheres of many radii, first and again, on the GPU") {
+  tests::many_radii const scene(50, 1000, 1000);
+  tests::check_changing_radii<collide::karabassi<>>(collide::cuda_shared(), scene);
+  tests::check_changing_radii<collide::karabassi_swept<>>(collide::cuda_shared(), scene);
+}
+
 TEST_CASE("reaches: queries of spheres of many radii can be captured in a graph, and follow radii that change") {
   tests::many_radii const scene(200, 8000, 1000);
   cudaStream_t stream = nullptr;
@@ -32,6 +38,7 @@ TEST_CASE("reaches: queries of spheres of many radii can be captured in a graph,
       detector.query(spheres.view(), sink);
       collide::cuda_check(cudaStreamEndCapture(stream, &graph), "cudaStreamEndCapture");
       collide::cuda_check(cudaGraphInstantiate(&runs, graph, 0), "cudaGraphInstantiate");
+      for (int k = 0; k < 3; ++k) detector.query(spheres.view(), sink);  // makes cells for many queries
       for (std::size_t const i : {1u, 0u, 0u, 2u, 3u}) {
         space.copy_from_host(const_cast<float*>(radii), scene.radii[i].data(), scene.radii[i].size());
         collide::cuda_check(cudaGraphLaunch(runs, stream), "cudaGraphLaunch");

@@ -152,9 +152,8 @@ struct resolve_deferred {
       start(open, state[thread_rank], block.index() * Block::num_threads + static_cast<std::size_t>(thread_rank));
     });
     for (std::uint32_t before = 0;;) {
-      block.for_each_thread([&](int thread_rank) {
-        hits[thread_rank] = find_next(open, state[thread_rank], stride, own[thread_rank]);
-      });
+      block.for_each_thread(
+          [&](int thread_rank) { hits[thread_rank] = find_next(open, state[thread_rank], stride, own[thread_rank]); });
       block.for_each_thread([&](int thread_rank) {  // behind a barrier, as `push_hits` says
         if (hits[thread_rank]) block.add(s.found, 1);
       });

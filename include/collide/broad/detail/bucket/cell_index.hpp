@@ -141,7 +141,8 @@ class cell_index {
     return measures_.clear(space);
   }
 
-  /// For at most this many triangles the lists of cells get memory for the largest possible number of entries; for more triangles, or cells of a given width, the host reads the numbers back first.
+  /// For at most this many triangles the lists of cells get memory for the largest possible number of entries; for
+  /// more, or cells of a given width, the host reads the numbers back first.
   static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
 
   /// False if the budget has no room for statistics, and so for grids.
