@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <optional>
 #include <type_traits>
-#include <utility>
 
 #include <collide/broad/detail/bucket/cell_index.hpp>
 #include <collide/broad/detail/bucket/sorted_spheres.hpp>
@@ -51,16 +50,6 @@ struct bucket {
 };
 
 namespace detail {
-
-template <class Space>
-using space_is_captured = decltype(std::declval<Space const&>().is_captured());
-
-/// True if what is put on the space's stream is kept for later, as in a CUDA graph.
-template <class Space>
-bool is_captured([[maybe_unused]] Space const& space) {
-  if constexpr (is_valid<space_is_captured, Space>) return space.is_captured();
-  return false;
-}
 
 /// Which way round a query goes: spheres look for triangles in the cells, or triangles look for spheres that are sorted
 /// into the cells.
@@ -169,6 +158,9 @@ class bucket::index {
     cells_.template query<NarrowPhase>(space, spheres, output);
   }
 
+  /// Memory that is free during a query.
+  detail::spare_pairs spare() const { return cells_.spare(); }
+
   /// The triangles near a single sphere, for a kernel; valid until the next build or prepare.
   detail::bucket_ref<S> const& mesh_lookup() const { return cells_.ref(); }
 
@@ -208,23 +200,12 @@ class bucket::index {
         plan.makes_grids = plan.makes_grids || cells_.grids().spheres < plan.spheres;
       }
     }
-    if constexpr (!bucket_tuning<Space>::bins_spheres && !detail::serves_steps<Space>) {
-      if (has_grids && options.cell_width == 0) plan_for_many(space, spheres.size(), plan);
+    // few of many triangles are read again by a query, so narrower cells hardly take longer to fill
+    if (!bucket_tuning<Space>::bins_spheres && mesh_.size() > detail::cell_index<S>::max_without_readback &&
+        spheres.size() <= mesh_.size() / 4) {
+      plan.spheres = 8 * spheres.size();
     }
     return plan;
-  }
-
-  /// Narrower cells, which pay for many queries: for those of a mesh that has been asked twice, in the memory that
-  /// there is, and at once where the host waits for the number of entries, as these cost the least there. Not while a
-  /// graph is captured, which would make them again and again.
-  template <class Space>
-  void plan_for_many(Space& space, std::size_t spheres, detail::query_plan<S>& plan) const {
-    if (mesh_.size() > detail::cell_index<S>::max_without_readback) {
-      plan.spheres = 8 * spheres;
-    } else if (queries_ >= few_queries && !detail::is_captured(space)) {
-      plan.spheres = 16 * spheres;
-      plan.makes_grids = plan.makes_grids || cells_.grids().spheres < plan.spheres / 4;
-    }
   }
 
   /// The plan of a query of spheres that move: they are sorted, too, if there are many, of one radius, and none moves
@@ -253,7 +234,7 @@ class bucket::index {
   detail::query_plan<S> plan_grids(Space&, Spheres const& spheres, bool whole_boxes) {
     detail::wanted_grids<S> wanted = given_.value_or(detail::wanted_grids<S>{});
     auto const& asked = cells_.grids().asked;
-    if (given_ && wanted.max_count != 0 && asked.by_radii() && asked.given == wanted.given) {
+    if (given_ && wanted.max_count != 0 && asked.max_count != 0 && asked.by_radii() && asked.given == wanted.given) {
       wanted = asked;  // they serve any radii
     } else if (given_ && wanted.max_count != 0 && !spheres.one_radius()) {
       wanted.max_count = cells_.template max_grid_count<Space>(spheres.size());

@@ -120,14 +120,6 @@ class cuda_space {
   /// Waits until all work on the stream is done.
   void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
-  /// True while the stream is captured for a CUDA graph.
-  bool is_captured() const {
-    cudaStreamCaptureStatus status = cudaStreamCaptureStatusNone;
-    bool const is_known = cudaStreamIsCapturing(stream_, &status) == cudaSuccess;
-    if (!is_known) (void)cudaGetLastError();  // the default stream, while another one is captured
-    return !is_known || status != cudaStreamCaptureStatusNone;
-  }
-
   /// True if all work on the stream is done.
   bool is_done() const {
     cudaError_t const status = cudaStreamQuery(stream_);

@@ -38,7 +38,6 @@ TEST_CASE("reaches: queries of spheres of many radii can be captured in a graph,
       detector.query(spheres.view(), sink);
       collide::cuda_check(cudaStreamEndCapture(stream, &graph), "cudaStreamEndCapture");
       collide::cuda_check(cudaGraphInstantiate(&runs, graph, 0), "cudaGraphInstantiate");
-      for (int k = 0; k < 3; ++k) detector.query(spheres.view(), sink);  // makes cells for many queries
       for (std::size_t const i : {1u, 0u, 0u, 2u, 3u}) {
         space.copy_from_host(const_cast<float*>(radii), scene.radii[i].data(), scene.radii[i].size());
         collide::cuda_check(cudaGraphLaunch(runs, stream), "cudaGraphLaunch");

@@ -81,8 +81,13 @@ TEST_CASE_TEMPLATE("undecided: a few open pairs", S, float, double) {
   CHECK(tests::check_all(touching_scene<S>(3, 60), {}).size() == 120);
 }
 
-TEST_CASE_TEMPLATE("undecided: more open pairs than their list has room for", S, float, double) {
+TEST_CASE_TEMPLATE("undecided: more open pairs than their list has room for, and room beside the entries", S, float,
+                   double) {
   // the list has room for 1024 pairs and one per sphere
+  CHECK(tests::check_all(touching_scene<S>(20, 60), {}).size() == 800);
+}
+
+TEST_CASE_TEMPLATE("undecided: more open pairs than there is room for", S, float, double) {
   CHECK(tests::check_all(touching_scene<S>(60, 60), {}).size() == 2400);
 }
 

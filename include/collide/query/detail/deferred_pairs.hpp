@@ -20,15 +20,15 @@ namespace collide::detail {
 /// The memory of the deferred pairs. The second pass leaves it empty for the next query.
 class deferred_pair_buffer {
  public:
-  /// No pairs, and room for those of a query of so many spheres.
+  /// No pairs, and room for those of a query of so many spheres: less of its own where an index has some to spare.
   template <class Space>
-  deferred_pairs acquire(Space& space, std::size_t spheres) {
-    std::size_t const capacity = capacity_for(spheres);
+  deferred_pairs acquire(Space& space, std::size_t spheres, spare_pairs spare) {
+    std::size_t const capacity = capacity_for(spheres, spare.begin != nullptr);
     bool const empty = empty_ && count_.data() != nullptr;  // that of a list which was moved is not there
     auto* const count = count_.reserve(space.resource(), 1);
     if (!empty) space.fill(count, 0, sizeof *count);
     empty_ = false;
-    return {count, pairs_.reserve(space.resource(), capacity), capacity};
+    return {count, pairs_.reserve(space.resource(), capacity), capacity, spare};
   }
 
   /// Takes the memory for queries of up to so many spheres.
@@ -36,16 +36,16 @@ class deferred_pair_buffer {
   void reserve(Space const& space, std::size_t spheres) {
     if (count_.data() == nullptr) empty_ = false;
     count_.reserve(space.resource(), 1);
-    pairs_.reserve(space.resource(), capacity_for(spheres));
+    pairs_.reserve(space.resource(), capacity_for(spheres, false));
   }
 
   /// To be called when both passes have been launched.
   void release() { empty_ = true; }
 
  private:
-  static std::size_t capacity_for(std::size_t spheres) {
-    constexpr std::size_t min_count = 1024, of_each = std::size_t{1} << 17;
-    return min_count + min(spheres, of_each) + spheres / 64;
+  static std::size_t capacity_for(std::size_t spheres, bool is_spared) {
+    std::size_t const of_each = std::size_t{1} << (is_spared ? 17 : 22);
+    return 1024 + min(spheres, of_each) + (is_spared ? spheres / 64 : 0);
   }
 
   buffer<deferred_pairs::counters> count_;
@@ -70,7 +70,7 @@ struct resolve_deferred {
   template <class Space>
   void choose_grid_size(Space const& space) {
     constexpr std::size_t threads = Space::template block<resolve_deferred>::num_threads;
-    blocks = min(max<std::size_t>(1, space.saturating_blocks() / 4), (deferred.capacity + threads - 1) / threads);
+    blocks = min(max<std::size_t>(1, space.saturating_blocks() / 4), (deferred.own_capacity + threads - 1) / threads);
   }
 
   template <class Block>
@@ -83,7 +83,7 @@ struct resolve_deferred {
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     std::uint64_t const total = deferred.count->total;
     // guard: listed
-    bool const all_were_stored = total <= deferred.capacity;
+    bool const all_were_stored = total <= deferred.capacity();
     std::uint64_t const busy = min<std::uint64_t>(blocks, (total + Block::num_threads - 1) / Block::num_threads);
     if (block.index() >= busy) {
       if (total == 0 && block.index() == 0) {
@@ -123,7 +123,7 @@ struct resolve_deferred {
         std::uint64_t const i = base + static_cast<std::uint64_t>(thread_rank);
         hits[thread_rank] = false;
         if (i >= n) return;
-        own[thread_rank] = deferred.pairs[i];
+        own[thread_rank] = deferred[i];
         hits[thread_rank] =
             resolve<NarrowPhase>(pipeline.mesh[own[thread_rank].triangle], pipeline.spheres[own[thread_rank].sphere]);
       });
@@ -237,6 +237,16 @@ struct every_triangle {
   }
 };
 
+/// An optional member of an index: memory that is free during a query.
+template <class Index>
+using index_spare_pairs = decltype(std::declval<Index const&>().spare());
+
+template <class Index>
+spare_pairs spare_of([[maybe_unused]] Index const& index) {
+  if constexpr (is_valid<index_spare_pairs, Index>) return index.spare();
+  return {};
+}
+
 template <class Index>
 using index_mesh_lookup = decltype(std::declval<Index const&>().mesh_lookup());
 
@@ -254,7 +264,7 @@ template <class NarrowPhase, class Space, class Index, class S, class Output>
 void query_two_pass(Space& space, Index& index, mesh_view<S> const& mesh,
                     sphere_view_for<NarrowPhase, S> const& spheres, Output const& output,
                     deferred_pair_buffer& buffer) {
-  deferred_pairs const deferred = buffer.acquire(space, spheres.size());
+  deferred_pairs const deferred = buffer.acquire(space, spheres.size(), spare_of(index));
   index.template query<NarrowPhase>(space, spheres, output_with_deferral<Output>{output, deferred});
   auto const lookup = lookup_of(index, mesh);
   resolve_deferred<S, NarrowPhase, Output, std::decay_t<decltype(lookup)>> kernel{

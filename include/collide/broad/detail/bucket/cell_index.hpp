@@ -150,12 +150,19 @@ class cell_index {
   grid_set<S> const& grids() const { return grids_; }
   bucket_ref<S> const& ref() const { return ref_; }
 
+  /// The end of the entries' memory, if the host has not asked how many there are: then about half of it is free.
+  spare_pairs spare() const {
+    if (!grids_.are_filled || waits_for_sizes()) return {};
+    return {lists_.spare(), lists_.total(), lists_.capacity()};
+  }
+
   /// How many grids there may be for spheres of many radii.
   template <class Space>
   int max_grid_count(std::size_t spheres) const {
     if (bucket_tuning<Space>::bins_spheres) return max_grids;
     if (serves_steps<Space> || spheres <= fewest_of_grid()) return 1;
-    return mesh_.size() > max_without_readback ? max_grids : grids_without_readback;
+    int const most = mesh_.size() > max_without_readback ? max_grids : grids_without_readback;
+    return static_cast<int>(min<std::size_t>(1 + spheres / fewest_of_grid(), static_cast<std::size_t>(most)));
   }
 
   /// Makes grids, as many as the budget allows, for these spheres, of which `all` are to come; `anew` if those that are
