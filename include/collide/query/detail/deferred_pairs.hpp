@@ -134,8 +134,8 @@ struct resolve_deferred {
   /// How far a thread has gone through the candidates of a sphere.
   struct progress {
     std::size_t number;  ///< of the sphere
-    typename Lookup::cursor at;
-    typename Lookup::range range;
+    typename Lookup::cursor_type at;
+    typename Lookup::range_type range;
     std::uint32_t k;     ///< how many of the range
     std::uint64_t seen;  ///< how many of all
   };
@@ -216,8 +216,8 @@ struct resolve_deferred {
 
 /// All triangles, for the spheres of an index that has no `mesh_lookup()`.
 struct every_triangle {
-  using cursor = bool;  ///< true if they have been gone through
-  struct range {
+  using cursor_type = bool;  ///< true if they have been gone through
+  struct range_type {
     std::uint32_t count;
     COLLIDE_HD_INLINE pair at(std::uint32_t k) const { return {0, k}; }
   };
@@ -226,11 +226,11 @@ struct every_triangle {
 
   COLLIDE_HD_INLINE every_triangle const& opened() const { return *this; }
   template <class Sphere>
-  COLLIDE_HD_INLINE cursor begin(Sphere const&) const {
+  COLLIDE_HD_INLINE cursor_type begin(Sphere const&) const {
     return false;
   }
   template <class Sphere>
-  COLLIDE_HD_INLINE bool next(Sphere const&, cursor& c, std::uint32_t, range& r) const {
+  COLLIDE_HD_INLINE bool next(Sphere const&, cursor_type& c, std::uint32_t, range_type& r) const {
     if (c) return false;
     r.count = triangles;
     return c = true;
