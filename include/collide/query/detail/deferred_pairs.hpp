@@ -28,7 +28,8 @@ class deferred_pair_buffer {
     auto* const count = count_.reserve(space.resource(), 1);
     if (!empty) space.fill(count, 0, sizeof *count);
     empty_ = false;
-    return {count, pairs_.reserve(space.resource(), capacity), capacity, spare};
+    auto* const pairs = pairs_.reserve(space.resource(), capacity);
+    return {count, pairs, pairs_.capacity(), spare};
   }
 
   /// Takes the memory for queries of up to so many spheres.
