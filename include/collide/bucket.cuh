@@ -237,7 +237,8 @@ class bucket::index {
     if (given_ && wanted.max_count != 0 && asked.max_count != 0 && asked.by_radii() && asked.given == wanted.given) {
       wanted = asked;  // they serve any radii
     } else if (given_ && wanted.max_count != 0 && !spheres.one_radius()) {
-      wanted.max_count = cells_.template max_grid_count<Space>(spheres.size());
+      // to look at the radii takes a while, so only where there are spheres for two more grids
+      wanted.max_count = cells_.template max_grid_count<Space>(spheres.size() / 2);
       if (wanted.max_count > 1) wanted.reach = -1;
     } else if (!given_) {
       S const radius = spheres.common_radius();

@@ -67,11 +67,11 @@ struct resolve_deferred {
   Lookup lookup;
   std::size_t blocks;
 
-  /// Some of the blocks that there is room for, as mostly few pairs are deferred.
+  /// A few blocks, as mostly few pairs are deferred.
   template <class Space>
   void choose_grid_size(Space const& space) {
     constexpr std::size_t threads = Space::template block<resolve_deferred>::num_threads;
-    blocks = min(max<std::size_t>(1, space.saturating_blocks() / 4), (deferred.own_capacity + threads - 1) / threads);
+    blocks = min(max<std::size_t>(1, space.saturating_blocks() / 8), (deferred.own_capacity + threads - 1) / threads);
   }
 
   template <class Block>

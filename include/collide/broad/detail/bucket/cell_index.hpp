@@ -264,7 +264,7 @@ class cell_index {
   }
 
   /// Takes memory for up to `max_count` grids. Where nobody knows how many there will be each may have half the
-  /// entries.
+  /// entries, but two together all of theirs.
   template <class Space>
   void plan_memory(Space& space, int max_count, bool may_be_fewer, std::size_t spheres) {
     auto const* const boxes = measures_.boxes();
@@ -276,7 +276,9 @@ class cell_index {
     // what is held for another number of cells would come on top of what the budget was planned for
     if (limits_.memory_budget != 0 && grids_.cells != cells) lists_.release();
     grids_.cells = cells;
-    grids_.entry_limit = may_be_fewer && plan.grids > 1 ? plan.entries / 2 : plan.entries;
+    auto const grids = static_cast<std::size_t>(plan.grids);
+    grids_.entry_limit =
+        may_be_fewer ? plan.entries / grids * max<std::size_t>(grids / 2, min<std::size_t>(grids, 2)) : plan.entries;
     grids_.table_bits = plan.table_bits;
     grids_.count = plan.grids;
     grids_.memory.reserve(space.resource(), max_grids);
