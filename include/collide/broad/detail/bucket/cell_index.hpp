@@ -152,8 +152,9 @@ class cell_index {
 
   /// The end of the entries' memory, if the host has not asked how many there are: then about half of it is free.
   spare_pairs spare() const {
+    static_assert(sizeof(cell_item) == sizeof(pair), "collide: pairs are written where entries could be");
     if (!grids_.are_filled || waits_for_sizes()) return {};
-    return {lists_.spare(), lists_.total(), lists_.capacity()};
+    return {reinterpret_cast<pair*>(const_cast<cell_item*>(ref_.entries)), ref_.total, ref_.capacity};
   }
 
   /// How many grids there may be for spheres of many radii.

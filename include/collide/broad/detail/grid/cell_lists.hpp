@@ -10,7 +10,6 @@
 #include <collide/broad/detail/grid/grid.hpp>
 #include <collide/broad/detail/grid/memory_plan.hpp>
 #include <collide/broad/detail/grid/triangle_cells.hpp>
-#include <collide/core/contact.hpp>
 #include <collide/core/memory.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/mesh.hpp>
@@ -299,12 +298,6 @@ class cell_lists {
   std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
   cell_item const* entries() const { return entries_.data(); }
   std::size_t capacity() const { return entries_.capacity(); }
-
-  /// The memory of the entries, as that of pairs.
-  pair* spare() const {
-    static_assert(sizeof(cell_item) == sizeof(pair), "collide: pairs are written where entries could be");
-    return reinterpret_cast<pair*>(entries_.data());
-  }
 
  private:
   std::size_t cells_ = 0;
