@@ -444,7 +444,6 @@ class simulation {
       advance_bodies(0, true);  // those that the caller drives, to where they begin
     bool const keeps_kicks = what == detail::meeting::of_woken;
     if constexpr (effects_type::any_pair_contact) {
-      if (!keeps_kicks && !neighbours_.inside_is_done()) forget_pair_kicks();
       if (!keeps_kicks || !effects_type::keeps_support) {
         neighbours_.renew(space_, with_copies, effects_.space());
         settle_births(with_copies, dt);
@@ -470,7 +469,6 @@ class simulation {
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.
   void meet_inside(state_type const& with_copies, S dt) {
-    forget_pair_kicks();
     neighbours_.interact_inside(space_, with_copies, effects_, dt);
   }
   detail::overlap_pool overlap_pool() const {

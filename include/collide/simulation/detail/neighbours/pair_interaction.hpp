@@ -82,14 +82,17 @@ struct pair_interaction {
     return goes_on;
   }
 
+  /// Keeps what others do to a particle: nothing, if none is there.
   COLLIDE_HD_INLINE void store(pair_state& p) const {
-    if (!p.met) return;
-    if (p.self[position{}].x() == std::numeric_limits<S>::max()) return;  // it is gone: what is known of it is old
+    // of one that is gone, what is known is old
+    bool const met = p.met && p.self[position{}].x() != std::numeric_limits<S>::max();
     bool is_asleep = false;
     if constexpr (Effects::keeps_support) is_asleep = is_inactive(p.self) && is_inactive(p.changed);
-    if (what == meeting::in_step && !is_asleep)
+    if (met && what == meeting::in_step && !is_asleep)
       state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
-    if constexpr (Effects::keeps_pair_forces) {
+    if (!met) {
+      forget_kicks<Effects>(state, p.self.number);
+    } else if constexpr (Effects::keeps_pair_forces) {
       particle<S, typename Effects::interaction_kicks> kicks;
       kicks[pair_acceleration{}] = (p.changed[velocity{}] - p.self[velocity{}]) * (1 / dt);
       if constexpr (Effects::keeps_pair_torques) {

@@ -173,11 +173,11 @@ class verlet_list {
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
-    if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
     if constexpr (Once) {
       if (*rebuild != 0) pairs_.keep(o);
     }
-    for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
+    std::size_t const in_table = blocks_ * cells::stride;
+    for_each_if_nonzero(space, rebuild, std::max(n, in_table), clear_cells<S, Effects>{o, in_table});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
     if constexpr (works_alone<Space>) {
       if (*rebuild != 0) scan_along_curve(o);
@@ -185,7 +185,6 @@ class verlet_list {
       for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
     }
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
-    for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
     if constexpr (Once || (order::has_memory && Space::host_accessible)) {
       if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
@@ -219,8 +218,6 @@ class verlet_list {
                    detail::interact_inside<S, Effects>{{{state, order_of(state), effects, dt, meeting::in_step}}});
     inside_is_done_ = true;
   }
-
-  bool inside_is_done() const { return inside_is_done_; }
 
   /// After `renew`: one pass of `on_pair_contact` over all pairs.
   template <class Space>
