@@ -132,9 +132,9 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using integration_reads =
       union_of<base, reads_if<E, is_integrated<E>>..., radius_if<any_mesh_contact || keeps_support>, own_number,
                own_clump, pair_kicks, columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
-  using ending_writes = union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>,
-                                 held_columns, support_columns, writes_if<E, writes_while_integrated<E>>...>;
-  using integration_writes = union_of<columns<position>, ending_writes>;
+  using integration_writes = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
+                                      columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns,
+                                      writes_if<E, writes_while_integrated<E>>...>;
   /// and for those that may touch the mesh.
   using contact = union_of<integration_reads, reads_if<E, has_mesh_contact<E, S>>...>;
   using contact_writes = union_of<integration_writes, writes_if<E, has_mesh_contact<E, S>>...>;

@@ -70,16 +70,17 @@ struct update_copies : update_and_check_skin<S, Effects> {
   }
 };
 
-/// Kernel functor of `for_each_if_nonzero` over the table, which it empties, and over places in the old order: keeps what
+/// Kernel functor of `in_turn_if_nonzero` over the table, which it empties, and over places in the old order: keeps what
 /// contacts remember, by numbers.
 template <class S, class Effects>
 struct clear_cells {
-  sorted_particles<S, Effects> order;
+  using ordered = sorted_particles<S, Effects>;
+  ordered order;
   std::size_t in_table;
 
   COLLIDE_HD void operator()(std::size_t i) const {
     if (i < in_table) order.ends[i] = 0;
-    if constexpr (sorted_particles<S, Effects>::has_memory) {
+    if constexpr (ordered::has_memory) {
       if (i < order.header->count) keep(static_cast<std::uint32_t>(i));
     }
   }
@@ -93,12 +94,14 @@ struct clear_cells {
     m.kept_of[order.numbers[place]] = {first, touching};
     std::uint32_t n = first;
     order.for_each_remembered(place, [&](std::uint32_t other, std::size_t item) {
-      m.kept[n++] = {m.records[item], order.number_at(other)};
+      kept_contact<S, typename ordered::remembered>& kept = m.kept[n++];
+      kept.record.set(m.slot(item).values());
+      kept.other = order.number_at(other);
     });
   }
 };
 
-/// Kernel functor of `for_each_if_nonzero` over particles: counts them into cells, or, once blocks have their share of
+/// Kernel functor of `in_turn_if_nonzero` over particles: counts them into cells, or, once blocks have their share of
 /// the order, copies them there.
 template <class S, class Effects, bool Fill>
 struct count_or_scatter {
@@ -145,7 +148,7 @@ struct count_or_scatter {
   }
 };
 
-/// Kernel functor of `for_each_if_nonzero` over places in the order: lists what is near.
+/// Kernel functor of `in_turn_if_nonzero` over places in the order: lists what is near.
 template <class S, class Effects>
 struct build_lists {
   sorted_particles<S, Effects> order;
@@ -185,7 +188,7 @@ struct build_lists {
     if constexpr (ordered::has_memory) {
       std::uint32_t touching = 0;
       restore(i, near.places, near.size, [&](std::uint32_t n, auto const& record) {
-        order.memory.records[n * order.capacity + i] = record;
+        order.memory.slot(n * order.capacity + i).set(record.values());
         touching |= 1u << n;
       });
       order.memory.touching[i] = touching;
@@ -232,7 +235,7 @@ struct build_lists {
       auto const& m = order.memory;
       for (std::uint32_t n = 0; n < size; ++n) m.run_touching[first + n] = 0;
       restore(i, run, size, [&](std::uint32_t n, auto const& record) {
-        m.records[order.run_item(first + n)] = record;
+        m.slot(order.run_item(first + n)).set(record.values());
         m.run_touching[first + n] = 1;
       });
     }

@@ -58,7 +58,7 @@ struct pair_interaction {
 
   /// A meeting with what the contact remembers in `record`, if it `was` there. True if there is something to remember.
   template <class Record>
-  COLLIDE_HD_INLINE bool interact(pair_state& p, std::uint32_t place, bool overlap, bool was, Record& record) const {
+  COLLIDE_HD_INLINE bool interact(pair_state& p, std::uint32_t place, bool overlap, bool was, Record record) const {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_awake = !is_inactive(other), is_other = overlap && is_awake;
     bool goes_on = was;
@@ -180,7 +180,7 @@ struct interact_listed : pair_interaction<S, Effects> {
 #if !defined(__CUDA_ARCH__)
     auto const& places = this->order;
     for (std::uint32_t left = places.memory.touching[i]; left != 0; left &= left - 1) {
-      __builtin_prefetch(places.memory.records + std::size_t(__builtin_ctz(left)) * places.capacity + i, 1);
+      __builtin_prefetch(places.memory.slot(std::size_t(__builtin_ctz(left)) * places.capacity + i).first, 1);
     }
 #endif
   }
@@ -191,7 +191,7 @@ struct interact_listed : pair_interaction<S, Effects> {
       std::uint32_t const before = places.memory.touching[self];
       std::uint32_t touching = 0;
       for_each_listed(self, before, [&](std::uint32_t place, bool overlap, std::uint32_t k) {
-        auto& record = places.memory.records[k * places.capacity + self];
+        auto const record = places.memory.slot(k * places.capacity + self);
         if (this->interact(p, place, overlap, (before >> k & 1) != 0, record)) touching |= 1u << k;
       });
       if ((touching | before) != 0) places.memory.touching[self] = touching;
@@ -208,7 +208,7 @@ struct interact_listed : pair_interaction<S, Effects> {
       std::uint8_t* const touching = places.memory.run_touching + first;
       auto const was = [&](std::uint32_t k) { return touching[k] != 0; };
       for_each_near(self, place_of, was, [&](std::uint32_t place, bool overlap, std::uint32_t k) {
-        auto& record = places.memory.records[places.run_item(first + k)];
+        auto const record = places.memory.slot(places.run_item(first + k));
         touching[k] = this->interact(p, place, overlap, was(k), record);
       });
     } else {

@@ -66,7 +66,7 @@ class verlet_list {
     if constexpr (order::on_ranks) is_at_border_.reserve(resource, n);
     lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
-    contacts_.reserve(resource, n, order::listed, runs_.capacity());
+    contacts_.reserve(resource, n, order::listed, runs_.capacity(), !Space::host_accessible);
     if constexpr (Once) pairs_.reserve(resource, n);
   }
 
@@ -177,15 +177,18 @@ class verlet_list {
       if (*rebuild != 0) pairs_.keep(o);
     }
     std::size_t const in_table = blocks_ * cells::stride;
-    for_each_if_nonzero(space, rebuild, std::max(n, in_table), clear_cells<S, Effects>{o, in_table});
-    for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
+    phase const clear{std::max(n, in_table), clear_cells<S, Effects>{o, in_table}};
+    phase const count{n, count_or_scatter<S, Effects, false>{state, o}};
+    phase const scan{blocks_, scan_cells{o.ends, &o.header->count}};
+    phase const fill{n, count_or_scatter<S, Effects, true>{state, o}};
+    phase const build{n, build_lists<S, Effects>{o, skin_}};
     if constexpr (works_alone<Space>) {
+      in_turn_if_nonzero(space, rebuild, clear, count);
       if (*rebuild != 0) scan_along_curve(o);
+      in_turn_if_nonzero(space, rebuild, fill, build);
     } else {
-      for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
+      in_turn_if_nonzero(space, rebuild, clear, count, scan, fill, build);
     }
-    for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
-    for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
     if constexpr (Once || (order::has_memory && Space::host_accessible)) {
       if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
     }
@@ -268,7 +271,7 @@ class verlet_list {
       others = copied(space, memory_.state(all, all, S(0)).at(global_number{}), header.count);
     auto const lists = copied(space, lists_.data(), order::listed * all),
                runs = copied(space, runs_.data(), runs_.capacity());
-    auto const memory = contacts_.template copied<order::listed>(space, all, header.count, runs.size());
+    auto const memory = contacts_.copied(space, header.count, runs.size());
     std::vector<std::uint32_t> place_of(all, order::overflow_mark);
     for (std::uint32_t i = 0; i < header.count; ++i) place_of[numbers[i]] = i;
     for (std::size_t number = 0; number < n; ++number) {

@@ -121,7 +121,7 @@ struct end_particles {
       }
     }
     end_particle(*this, p);
-    state.store(p, i, typename Effects::ending_writes{});
+    state.store(p, i, typename Effects::integration_writes{});
   }
 
  private:
@@ -129,7 +129,7 @@ struct end_particles {
   COLLIDE_HD_INLINE void press(Particle& p) const {
     if (!effects.only_sleeps(p)) return;
     record_sleeping(*this, p, last_kick<end_particles>(p));
-    state.store(p, p.number, typename Effects::ending_writes{});
+    state.store(p, p.number, typename Effects::integration_writes{});
   }
 };
 
