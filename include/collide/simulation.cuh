@@ -459,8 +459,9 @@ class simulation {
       using memory_type = std::decay_t<decltype(memory)>;
       detail::pressing_list const pressing{pressing_counts_.data(), pressing_.data()};
       clear_overlap_pool();
-      space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
-                                       state_, effects_, triangles, memory, pressing, what});
+      using list_type = detail::list_pressing<S, effects_type, mesh_type, memory_type>;
+      std::uint32_t const lanes = list_type::template lanes_for<execution_space>(state_.size);
+      space_.for_each(lanes * state_.size, list_type{state_, effects_, triangles, memory, pressing, what, lanes});
       std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
       space_.for_each(detail::max(state_.size, threads),
                       detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
@@ -690,7 +691,7 @@ class simulation {
   neighbour_lists neighbours_;
   surface_memory surfaces_;
   buffer<id> overflow_;
-  buffer<id> pressing_;                    ///< particles that may press on the mesh, and how many they are
+  buffer<detail::pressing_particle> pressing_;  ///< particles that may press on the mesh, and how many they are
   buffer<std::uint32_t> pressing_counts_;  ///< of those, of used `overlaps_`, and whether they were too few
   buffer<detail::overlap_item> overlaps_;  ///< of a device, for particles that overlap many triangles
   bodies_memory bodies_;

@@ -231,7 +231,7 @@ struct interact_listed : pair_interaction<S, Effects> {
       COLLIDE_NO_UNROLL
       for (std::uint32_t k = 0; k < near.size; ++k) {
         if constexpr (ordered::has_memory) {
-          contact_record<S, typename Effects::remembered> forgotten;
+          contact_record<S, typename Effects::remembered> forgotten{};
           this->interact(p, near.places[k], true, false, forgotten);
         } else {
           this->interact(p, near.places[k]);
