@@ -692,8 +692,8 @@ class simulation {
   surface_memory surfaces_;
   buffer<id> overflow_;
   buffer<detail::pressing_particle> pressing_;  ///< particles that may press on the mesh, and how many they are
-  buffer<std::uint32_t> pressing_counts_;  ///< of those, of used `overlaps_`, and whether they were too few
-  buffer<detail::overlap_item> overlaps_;  ///< of a device, for particles that overlap many triangles
+  buffer<std::uint32_t> pressing_counts_;       ///< of those, of used `overlaps_`, and whether they were too few
+  buffer<detail::overlap_item> overlaps_;       ///< of a device, for particles that overlap many triangles
   bodies_memory bodies_;
 };
 

@@ -70,8 +70,8 @@ struct update_copies : update_and_check_skin<S, Effects> {
   }
 };
 
-/// Kernel functor of `in_turn_if_nonzero` over the table, which it empties, and over places in the old order: keeps what
-/// contacts remember, by numbers.
+/// Kernel functor of `in_turn_if_nonzero` over the table, which it empties, and over places in the old order: keeps
+/// what contacts remember, by numbers.
 template <class S, class Effects>
 struct clear_cells {
   using ordered = sorted_particles<S, Effects>;

@@ -133,8 +133,8 @@ struct pressing_list {
   pressing_particle* particles;
 };
 
-/// Kernel functor of `for_each` over `lanes` threads for each particle, side by side: lists those that meet the box of a
-/// triangle. These are few, and much work.
+/// Kernel functor of `for_each` over `lanes` threads for each particle, side by side: lists those that meet the box of
+/// a triangle. These are few, and much work.
 template <class S, class Effects, class Triangles, class Memory>
 struct list_pressing {
   particle_state<S, typename Effects::all> state;
@@ -191,12 +191,13 @@ struct list_pressing {
     pressing_particle& to = found.particles[slot];
     if (share == 0) to.number = mine.number, to.met = met;
     COLLIDE_NO_UNROLL
-    for (std::uint32_t k = 0; k < mine.met && before + k < to.capacity; ++k) to.triangles[before + k] = mine.triangles[k];
+    for (std::uint32_t k = 0; k < mine.met && before + k < to.capacity; ++k)
+      to.triangles[before + k] = mine.triangles[k];
   }
 
  private:
   COLLIDE_HD_INLINE void find(sphere<S> const& shape, std::uint32_t share, std::uint32_t shares,
-                             pressing_particle& mine) const {
+                              pressing_particle& mine) const {
     Triangles const open = triangles.opened();
     if (open.empty(shape)) return;
     for_each_box_met(open, shape, share, shares, [&](id triangle, int) { mine.add(triangle); });
