@@ -41,6 +41,23 @@ struct saved_numbers {
   double time = 0, clock[clock_size] = {};
   std::uint8_t reverse_order = 0, next_meeting = 0, bodies_are_placed = 0;
 
+  saved_numbers() = default;
+  /// The numbers of a simulation, or of a rank's part of one with so many particles of all ranks. Waits.
+  template <class State>
+  saved_numbers(State const& s, std::uint64_t all_places, std::uint64_t all_placed)
+      : triangles{s.mesh.size()},
+        places{all_places},
+        placed{all_placed},
+        common_radius{s.particles.common_radius},
+        smallest_radius{s.radii.smallest},
+        largest_radius{s.radii.largest},
+        time{s.time},
+        reverse_order{s.reverse_order},
+        next_meeting{static_cast<std::uint8_t>(s.next_meeting)},
+        bodies_are_placed{s.bodies.are_placed()} {
+    if constexpr (State::has_begin_step) s.space.copy_to_host(clock, s.particles.time, clock_size);
+  }
+
   meeting meeting_between_steps() const { return static_cast<meeting>(min(int{next_meeting}, int(meeting::of_woken))); }
 
   /// Writes or reads all of them.
@@ -70,40 +87,31 @@ class checkpoint {
   using simulated = simulation<Detector, Effect...>;
   using S = typename simulated::scalar;
   using column_list = typename simulated::columns;
+  using state_type = simulation_state<Detector, Effect...>;
 
  public:
   using numbers_type = saved_numbers<S, (is_source<Effect> || ...)>;
   /// Writes all blocks. A column is on the host while it is written.
   static void write(simulated const& from, std::ostream& stream, std::string const& name = "the stream") {
-    if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
+    state_type const& s = from.internals();
+    if (!s.is_set) throw error("collide: save: the simulation has no particles: call set before it");
     checkpoint_writer to(stream, name);
-    numbers_type numbers{from.mesh_.size(),
-                         from.state_.size,
-                         from.state_.placed,
-                         from.state_.common_radius,
-                         from.radii_.smallest,
-                         from.radii_.largest,
-                         from.time_,
-                         {},
-                         from.reverse_order_,
-                         static_cast<std::uint8_t>(from.next_meeting_),
-                         from.bodies_.are_placed()};
-    if constexpr (simulated::has_begin_step) from.space_.copy_to_host(numbers.clock, from.state_.time, clock_size);
-    begin(to, numbers, from.effects_);
+    numbers_type numbers(s, s.particles.size, s.particles.placed);
+    begin(to, numbers, s.effects);
     for_each_column(
         [&](auto column) { write_column<decltype(column)>(to, from.template to_host<decltype(column)>()); });
     end(to, from);
     saved_contacts<S> pairs, surfaces;
-    if constexpr (remembers_pairs) pairs = contacts_between_particles(from);
-    if constexpr (remembers_surfaces) surfaces = from.surfaces_.save_contacts(from.space_, from.state_.size);
+    if constexpr (remembers_pairs) pairs = contacts_between_particles(s);
+    if constexpr (remembers_surfaces) surfaces = s.surfaces.save_contacts(s.space, s.particles.size);
     write_contacts(to, pairs, surfaces);
     to.finish();
   }
 
   /// The memory of contacts between particles. Waits.
-  static saved_contacts<S> contacts_between_particles(simulated const& from) {
-    from.check_contacts();
-    return from.neighbours_.save_contacts(from.space_, from.state_.size);
+  static saved_contacts<S> contacts_between_particles(state_type const& s) {
+    check_contacts(s);
+    return s.neighbours.save_contacts(s.space, s.particles.size);
   }
 
   /// Writes what is before the columns; then each column follows, and `end`.
@@ -123,7 +131,7 @@ class checkpoint {
   }
   template <class Simulation>
   static void end(checkpoint_writer& to, Simulation const& from) {
-    if constexpr (simulated::has_bodies) {
+    if constexpr (state_type::has_bodies) {
       from.bodies().for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
         std::vector<unsigned char> copy(n * sizeof(*elements));
         from.space().copy_to_host(copy.data(), reinterpret_cast<unsigned char const*>(elements), copy.size());
@@ -138,14 +146,14 @@ class checkpoint {
     if constexpr (remembers_surfaces) write_contacts(to, "contacts with the mesh", surfaces);
   }
 
-  checkpoint(simulated const& into, std::istream& stream) : checkpoint(into.mesh_.size(), into, stream) {}
+  checkpoint(simulated const& into, std::istream& stream) : checkpoint(into.internals().mesh.size(), into, stream) {}
   /// Reads and checks all blocks, for a simulation with so many triangles and such bodies. Changes nothing.
   template <class Simulation>
   checkpoint(std::size_t triangles, Simulation const& into, std::istream& stream) {
     checkpoint_reader from(stream);
     pass_types(from);
     numbers_.pass(from);
-    if (simulated::asks_mesh && numbers_.triangles != triangles) {
+    if (state_type::asks_mesh && numbers_.triangles != triangles) {
       from.refuse("triangles", "the file has " + std::to_string(numbers_.triangles) + ", the mesh of the simulation " +
                                    std::to_string(triangles));
     }
@@ -153,7 +161,7 @@ class checkpoint {
     if (numbers_.placed > numbers_.places) from.refuse("placed", "more than there are places");
     (read_parameters<Effect>(from), ...);
     read_columns(from, column_list());
-    if constexpr (simulated::has_bodies) {
+    if constexpr (state_type::has_bodies) {
       into.bodies().for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
         bodies_.push_back(from.block<unsigned char>(name, n * sizeof(*elements)));
       });
@@ -174,31 +182,45 @@ class checkpoint {
 
   /// Gives the simulation this state.
   void restore(simulated& to) const {
-    auto& space = to.space_;
+    state_type& s = to.internals();
+    preparation prepare(s);
     auto const places = static_cast<std::size_t>(numbers_.places);
-    to.reserve(places);
-    auto state = to.memory_.state(places, static_cast<std::size_t>(numbers_.placed), numbers_.common_radius);
-    if constexpr (simulated::has_begin_step) {
-      state.time = to.device_time_.data();
-      space.copy_from_host(state.time, numbers_.clock, clock_size);
+    prepare.reserve(places);
+    auto particles = s.memory.state(places, static_cast<std::size_t>(numbers_.placed), numbers_.common_radius);
+    if constexpr (state_type::has_begin_step) particles.time = s.device_time.data();
+    s.space.for_each(
+        padded_size(places),
+        init_particles<S, column_list>{particles, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr, S(0)});
+    restore_columns(s.space, particles, 0, 0, places);
+    s.particles = particles;
+    s.reverse_order = numbers_.reverse_order != 0;
+    s.radii = {numbers_.smallest_radius, numbers_.largest_radius, S(0)};
+    if constexpr (state_type::effects_type::any_pair_contact) s.neighbours.clear(s.space, places, s.radii);
+    s.is_set = true;
+    restore_rest(s, numbers_.clock);
+    if constexpr (remembers_pairs) s.neighbours.restore_contacts(s.space, pair_contacts_);
+    if constexpr (remembers_surfaces) s.surfaces.restore_contacts(s.space, surface_contacts_);
+  }
+
+  /// Gives a simulation, or a rank's part of one, whose particles are there, all that is not known of each: the time,
+  /// effects and bodies.
+  template <class State>
+  void restore_rest(State& s, double const* clock) const {
+    if constexpr (State::has_begin_step) s.space.copy_from_host(s.particles.time, clock, clock_size);
+    (restore_parameters_of<Effect>(s.effects), ...);
+    s.time = numbers_.time;
+    s.next_meeting = numbers_.meeting_between_steps();
+    preparation prepare(s);
+    prepare.know_smallest();
+    prepare.bodies_and_index();
+    if constexpr (State::has_bodies) {
+      std::size_t next = 0;
+      s.bodies.for_each_saved([&](std::string const&, auto* elements, std::size_t) {
+        auto const& saved = bodies_[next++];
+        s.space.copy_from_host(reinterpret_cast<unsigned char*>(elements), saved.data(), saved.size());
+      });
     }
-    space.for_each(padded_size(places), init_particles<S, column_list>{
-                                            state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr, S(0)});
-    restore_columns(space, state, 0, 0, places);
-    restore_parameters(to.effects_);
-    to.state_ = state;
-    to.time_ = numbers_.time;
-    to.reverse_order_ = numbers_.reverse_order != 0;
-    to.next_meeting_ = numbers_.meeting_between_steps();
-    to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius, S(0)};
-    if constexpr (simulated::effects_type::any_pair_contact) to.neighbours_.clear(space, places, to.radii_);
-    to.is_set_ = true;
-    to.know_smallest();
-    to.prepare();
-    restore_bodies(to);
-    to.bodies_.place(numbers_.bodies_are_placed != 0);
-    if constexpr (remembers_pairs) to.neighbours_.restore_contacts(space, pair_contacts_);
-    if constexpr (remembers_surfaces) to.surfaces_.restore_contacts(space, surface_contacts_);
+    s.bodies.place(numbers_.bodies_are_placed != 0);
   }
 
   /// Gives places from `place` on the columns of `n` particles from number `first` on.
@@ -210,27 +232,13 @@ class checkpoint {
       space.copy_from_host(state.at(c) + width * place, column<decltype(c)>().data() + width * first, width * n);
     });
   }
-  template <class Effects>
-  void restore_parameters(Effects& to) const {
-    (restore_parameters_of<Effect>(to), ...);
-  }
-  template <class Simulation>
-  void restore_bodies(Simulation& to) const {
-    if constexpr (simulated::has_bodies) {
-      std::size_t next = 0;
-      to.bodies().for_each_saved([&](std::string const&, auto* elements, std::size_t) {
-        auto const& saved = bodies_[next++];
-        to.space().copy_from_host(reinterpret_cast<unsigned char*>(elements), saved.data(), saved.size());
-      });
-    }
-  }
 
  private:
   /// The type of the simulation: written, or compared with what was.
   template <class Archive>
   static void pass_types(Archive& archive) {
     archive.text("scalar", type_name<S>());
-    archive.text("narrow phase", type_name<typename simulated::narrow_phase>());
+    archive.text("narrow phase", type_name<typename state_type::narrow_phase>());
     std::string list;
     ((list += (list.empty() ? "" : ", ") + type_name<Effect>()), ...);
     archive.text("effects", list);

@@ -195,7 +195,7 @@ void for_each_contact_of(simulation<Detector, Effect...> const& of, particles_on
     using remembered = typename simulation<Detector, Effect...>::effects_type::remembered;
     using record_type = contact_record<double, remembered>;
     using values_type = contact_values<double, remembered>;
-    auto const saved = checkpoint<Detector, Effect...>::contacts_between_particles(of);
+    auto const saved = checkpoint<Detector, Effect...>::contacts_between_particles(of.internals());
     std::size_t at = 0;
     for (std::size_t i = 0; i < saved.counts.size(); ++i) {
       for (std::uint32_t n = 0; n < saved.counts[i]; ++n, ++at) {
@@ -281,33 +281,27 @@ struct springs_at_mesh {
   }
 };
 
-/// Sums over the contacts of a simulation's particles with the mesh.
-template <class Detector, class... Effect>
-struct mesh_contacts_of {
-  using simulated = simulation<Detector, Effect...>;
+/// The sums of f(particle, overlap, what it remembers) over the contacts of each particle with the mesh. Waits.
+template <class Sum, class Detector, class... Effect, class F>
+std::vector<Sum> sums_over_mesh_contacts(simulation<Detector, Effect...> const& of, F const& f) {
   using S = typename Detector::scalar;
-
-  /// The sums of f(particle, overlap, what it remembers) for each particle. Waits.
-  template <class Sum, class F>
-  static std::vector<Sum> sums(simulated const& of, F const& f) {
-    auto const triangles = of.template mesh_ref<true>(S(0));
-    auto const memory = of.surfaces_.ref(of.size());
-    std::vector<Sum> found(of.size());
-    if (of.mesh_.size() == 0 || found.empty()) return found;
-    buffer<Sum> sums;
-    sums.reserve(of.space_.resource(), found.size());
-    using kernel = sum_over_mesh_contacts<S, typename simulated::effects_type, std::decay_t<decltype(triangles)>,
-                                          std::decay_t<decltype(memory)>, F, Sum>;
-    of.clear_overlap_pool();
-    of.space_.for_each(
-        found.size(),
-        kernel{{of.state_, of.effects_, triangles, memory, {}, of.overlap_pool(), S(0), meeting::of_all, 0},
-               f,
-               sums.data()});
-    of.space_.copy_to_host(found.data(), sums.data(), found.size());
-    return found;
-  }
-};
+  auto const& s = of.internals();
+  auto const triangles = mesh_ref<true>(s, S(0));
+  auto const memory = s.surfaces.ref(s.particles.size);
+  std::vector<Sum> found(s.particles.size);
+  if (s.mesh.size() == 0 || found.empty()) return found;
+  buffer<Sum> sums;
+  sums.reserve(s.space.resource(), found.size());
+  using kernel = sum_over_mesh_contacts<S, typename simulation<Detector, Effect...>::effects_type,
+                                        std::decay_t<decltype(triangles)>, std::decay_t<decltype(memory)>, F, Sum>;
+  s.space.for_each(
+      found.size(),
+      kernel{{s.particles, s.effects, triangles, memory, {}, empty_overlap_pool(s), S(0), meeting::of_all, 0},
+             f,
+             sums.data()});
+  s.space.copy_to_host(found.data(), sums.data(), found.size());
+  return found;
+}
 
 /// Adds the energies of the motion of clumps, and in a field; density(i) is that of sphere i.
 template <class Detector, class... Effect, class Density>
@@ -371,8 +365,8 @@ energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0
   if constexpr (is_granular) {
     law_type const& law = of.template effect<law_type>();
     sum.tangential = tangential_energy(law, of, all);
-    auto const at_mesh = detail::mesh_contacts_of<Detector, Effect...>::template sums<detail::spring_energies>(
-        of, detail::springs_at_mesh<law_type>{law});
+    auto const at_mesh =
+        detail::sums_over_mesh_contacts<detail::spring_energies>(of, detail::springs_at_mesh<law_type>{law});
     for (std::size_t i = 0; i < at_mesh.size(); ++i) {
       if (all.is_there[i] == 0) continue;
       sum.elastic += at_mesh[i].elastic;

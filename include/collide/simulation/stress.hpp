@@ -173,7 +173,7 @@ void for_each_load(simulation<Detector, Effect...> const& of, Sink& sink) {
                 "collide: stress does not know clumps yet");
   law_type const& law = of.template effect<law_type>();
   particles_on_host<Detector, Effect...> const all(of);
-  auto loads = mesh_contacts_of<Detector, Effect...>::template sums<mesh_load>(of, load_of_mesh<law_type>{law});
+  auto loads = sums_over_mesh_contacts<mesh_load>(of, load_of_mesh<law_type>{law});
   for_each_force(of, all, [&](std::size_t i, std::size_t k, vec3<double> const& branch, vec3<double> const& force) {
     ++loads[i].contacts, ++loads[k].contacts;
     sink.line(all.at(all.x, i), branch, force);

@@ -105,7 +105,7 @@ void check_several(std::vector<tests::near_case> const& cases) {
     batch.filter_batch([&](int k) { return detail::filter_branchless(batch.triangle_of(k), batch.sphere_of(k)); });
     for (std::size_t i = 0; i < last - first; ++i) {
       auto const v = static_cast<detail::verdict>(batch.verdicts[i]);
-      sure += v != detail::verdict::uncertain;
+      sure += v == detail::verdict::hit || v == detail::verdict::miss;
       wrong += v == (hits[i] ? detail::verdict::miss : detail::verdict::hit);
     }
   }

@@ -3,11 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/simulation/detail/step/contact_key.hpp>
 #include <collide/simulation/detail/step/contact_scratch.hpp>
 #include <collide/simulation/detail/step/mesh_contact.hpp>
 #include <collide/simulation/detail/step/surface_at_rest.hpp>
-#include <collide/simulation/detail/step/wedge.hpp>
 
 namespace {
 

@@ -88,9 +88,6 @@ struct mesh_lookup {
   }
 };
 
-/// In place of a lookup, if nothing asks.
-struct absent {};
-
 /// The lookup of `all_pairs`.
 template <class S>
 struct all_pairs_ref : mesh_lookup<S> {

@@ -176,48 +176,5 @@ struct radius_range {
   }
 };
 
-/// The radii that particles have of their own; the largest is infinite if one is not finite. Waits.
-template <class Simulation>
-auto radius_range_of(Simulation const& simulation) {
-  using S = typename Simulation::scalar;
-  radius_range<S> found{std::numeric_limits<S>::infinity(), S(0)};
-  if constexpr (contains<typename Simulation::columns, radius>) {
-    auto const radii = simulation.template to_host<radius>();
-    for (std::size_t i = 0; i < radii.size(); ++i) {
-      S const r = radii[i];
-      found.largest = !is_finite(r) ? std::numeric_limits<S>::infinity() : i == 0 ? r : max(found.largest, r);
-      if (r >= 0) found.smallest = min(found.smallest, r);
-      if (!is_finite(r)) break;
-    }
-    for (S const r : radii) {
-      bool const is_small = r <= 2 * found.smallest;
-      if (is_small) found.small = max(found.small, r);
-      found.larger += !is_small;
-    }
-  }
-  return found;
-}
-
-/// The smallest radii that particles have, of each material too if the scene has materials; of all places, as a source
-/// fills them. Waits then. `is_known`: no effect changes materials.
-template <class Simulation, class S>
-smallest_radii smallest_radii_of(Simulation const& simulation, radius_range<S> const& range, bool is_known) {
-  smallest_radii found(static_cast<double>(range.smallest));
-  if constexpr (contains<typename Simulation::columns, material>) {
-    if (!is_known) return found;
-    for (double& r : found.of_material) r = std::numeric_limits<double>::infinity();
-    std::vector<S> radii;
-    if constexpr (contains<typename Simulation::columns, radius>) radii = simulation.template to_host<radius>();
-    auto const numbers = simulation.template to_host<material>();
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      auto const own = radii.empty() ? found.of_all : static_cast<double>(radii[i]);
-      found.largest_material = std::max<int>(found.largest_material, numbers[i]);
-      double& of_number = found.of_material[std::min<int>(numbers[i], smallest_radii::numbers - 1)];
-      if (own >= 0) of_number = std::min(of_number, own);
-    }
-  }
-  return found;
-}
-
 }  // namespace detail
 }  // namespace collide

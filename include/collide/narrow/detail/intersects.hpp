@@ -66,8 +66,8 @@ COLLIDE_HD_INLINE filter_result filter_exact(triangle<S> const& t, sphere<S> con
   return {filtered_test(narrow_to<float>(l), static_cast<float>(size)), stage::single_filter};
 }
 
-/// `filter_exact` without branches, so that a compiler makes vector code of a loop over several pairs. Pairs whose
-/// coordinates would have to be rescaled are also left uncertain.
+/// `filter_exact` without branches, so that a compiler makes vector code of a loop over several pairs. Those whose
+/// coordinates would have to be rescaled are `out_of_range`.
 template <class S>
 COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s) {
   using bounds = filter_bounds<float>;
@@ -76,7 +76,7 @@ COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> cons
   S const size = max_norm(l);
   bool const sized = (size >= S(bounds::smallest)) & (size <= S(bounds::largest));
   int const sure = static_cast<int>(filtered_test<true>(narrow_to<float>(l), static_cast<float>(size)));
-  int const then = (sure & -static_cast<int>(sized)) | static_cast<int>(!sized) << 1;
+  int const then = (sure & -static_cast<int>(sized)) | static_cast<int>(!sized) * 3;
   return static_cast<verdict>(then & -static_cast<int>(near));
 }
 

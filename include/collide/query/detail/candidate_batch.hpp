@@ -81,14 +81,15 @@ struct candidate_batch {
     }
     for (int i = 0; i < n; ++i) {
       int const k = uncertain[i];
-      if (verdicts[k] == static_cast<std::int32_t>(verdict::hit)) {
-        pipeline.push_hit(block, hits, ids[k]);
-      } else {
-        if constexpr (rest) {
+      auto const v = static_cast<verdict>(verdicts[k]);
+      if constexpr (rest) {
+        if (v == verdict::out_of_range) {
           pipeline.push(block, hits, ids[k], sphere_of(k));
-        } else {
-          pipeline.push(block, hits, ids[k], *moving[k]);
+        } else if (v == verdict::hit || stages::resolve(triangle_of(k), sphere_of(k))) {
+          pipeline.push_hit(block, hits, ids[k]);
         }
+      } else {
+        v == verdict::hit ? pipeline.push_hit(block, hits, ids[k]) : pipeline.push(block, hits, ids[k], *moving[k]);
       }
       pipeline.drain_if_full(block, hits);
     }

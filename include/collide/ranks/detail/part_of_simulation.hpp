@@ -34,6 +34,16 @@ class part_of_simulation {
   using S = typename Simulation::scalar;
   using space_type = typename Simulation::execution_space;
   using state_type = typename Simulation::state_type;
+
+ private:
+  using state_of_all = std::decay_t<decltype(std::declval<Simulation&>().internals())>;
+
+  state_of_all& data() { return simulation_.internals(); }
+  state_of_all const& data() const { return simulation_.internals(); }
+  auto phases() { return step_phases(data()); }
+  auto prepare() { return preparation(data()); }
+
+ public:
   using effects_type = typename Simulation::effects_type;
   using all_columns = typename Simulation::columns;
   using around_type = typename effects_type::space_type;
@@ -62,39 +72,28 @@ class part_of_simulation {
 
   Simulation& simulation() { return simulation_; }
   Simulation const& simulation() const { return simulation_; }
-  space_type& space() { return simulation_.space_; }
-  std::size_t own() const { return simulation_.state_.own; }
+  space_type& space() { return data().space; }
+  std::size_t own() const { return data().particles.own; }
 
   void set(sphere_view<S> const& particles, S const* velocities, global_counts const& all,
            radii_of_all<S> const& radii) {
     std::size_t const n = particles.size();
     capacity_ = max(n + static_cast<std::size_t>(all.free_size), std::size_t{1});
-    simulation_.place(particles, velocities, capacity_);
+    prepare().place(particles, velocities, capacity_);
     start(n, all, radii);
-    simulation_.know_smallest();
-    simulation_.prepare();
+    prepare().know_smallest();
+    prepare().bodies_and_index();
   }
 
   /// The part of a checkpoint of all ranks besides columns, effects and bodies.
   template <class Numbers>
   Numbers saved_numbers_of_all(bool reverse_order) const {
-    auto const& s = simulation_;
-    Numbers numbers{s.mesh_.size(),
-                    s.state_.all_size,
-                    s.state_.all_placed,
-                    s.state_.common_radius,
-                    s.radii_.smallest,
-                    s.radii_.largest,
-                    s.time_,
-                    {},
-                    reverse_order,
-                    static_cast<std::uint8_t>(s.next_meeting_),
-                    s.bodies_.are_placed()};
-    if constexpr (Simulation::has_begin_step) s.space_.copy_to_host(numbers.clock, s.state_.time, clock_size);
+    Numbers numbers(data(), data().particles.all_size, data().particles.all_placed);
+    numbers.reverse_order = reverse_order;
     return numbers;
   }
-  std::size_t triangles() const { return simulation_.mesh_.size(); }
-  effects_type const& effects() const { return simulation_.effects_; }
+  std::size_t triangles() const { return data().mesh.size(); }
+  effects_type const& effects() const { return data().effects; }
 
   /// Takes particles, time, effects and bodies of a checkpoint: `mine` particles, and free places. One rank of all
   /// `has_sums`: counts of all ranks.
@@ -110,24 +109,15 @@ class part_of_simulation {
     }
     auto const free = static_cast<std::size_t>(all.free_size);
     capacity_ = max(mine + free, std::size_t{1});
-    simulation_.place({}, nullptr, capacity_);
+    prepare().place({}, nullptr, capacity_);
     start(mine, all, {numbers.common_radius, {numbers.smallest_radius, largest, S(0)}, widest});
-    auto const& state = simulation_.state_;
+    auto const& state = data().particles;
     saved.restore_columns(space(), state, 0, static_cast<std::size_t>(all.first), mine);
     saved.restore_columns(space(), state, mine, static_cast<std::size_t>(all.first_free), free);
-    if constexpr (Simulation::has_begin_step) {
-      double clock[clock_size];
-      for (std::size_t k = 0; k < clock_size; ++k) clock[k] = numbers.clock[k];
-      if (!has_sums) clock[clock_overlapping] = clock[clock_not_born] = 0;
-      space().copy_from_host(state.time, clock, clock_size);
-    }
-    saved.restore_parameters(simulation_.effects_);
-    simulation_.time_ = numbers.time;
-    simulation_.next_meeting_ = numbers.meeting_between_steps();
-    simulation_.know_smallest();
-    simulation_.prepare();
-    saved.restore_bodies(simulation_);
-    simulation_.bodies_.place(numbers.bodies_are_placed != 0);
+    double clock[clock_size];
+    for (std::size_t k = 0; k < clock_size; ++k) clock[k] = numbers.clock[k];
+    if (!has_sums) clock[clock_overlapping] = clock[clock_not_born] = 0;
+    saved.restore_rest(data(), clock);
     if constexpr (remembers_pairs || remembers_surfaces) {
       contact_rows contacts;
       std::vector<id> const every = first_ids(static_cast<std::size_t>(all.size));
@@ -140,18 +130,18 @@ class part_of_simulation {
     space().synchronize();
   }
 
-  bool is_set() const { return simulation_.is_set_; }
-  std::size_t all_size() const { return simulation_.state_.all_size; }
+  bool is_set() const { return data().is_set; }
+  std::size_t all_size() const { return data().particles.all_size; }
 
   /// How far from its own subdomain, as it was at the last exchange, a rank must know particles.
   double reach() const { return reach_; }
 
-  void check_step(S dt) const { simulation_.check_step(dt); }
+  void check_step(S dt) { phases().check_step(dt); }
 
   /// The first part of a step, before particles meet.
   void begin_step(S dt) {
-    simulation_.time_ += static_cast<double>(dt);
-    simulation_.begin_step(dt);
+    data().time += static_cast<double>(dt);
+    phases().begin_step(dt);
   }
   /// After `begin_step`, while copies are under way: looks for what has moved. Lists of neighbours that are complete
   /// have all within the skin, so one kernel looks for both, where the skins are the same.
@@ -159,7 +149,7 @@ class part_of_simulation {
     if constexpr (any_pair_contact) {
       if (own() == 0) return;
       if (lists_tell_) {
-        simulation_.neighbours_.check(space(), with_copies(), around_);
+        data().neighbours.check(space(), with_copies(), around_);
       } else {
         look_for_moved();
       }
@@ -175,7 +165,7 @@ class part_of_simulation {
       if (!knows_others()) return true;
       if (own() == 0) return false;
       wait_for_messages(ranks, space());
-      return lists_tell_ ? simulation_.neighbours_.must_rebuild(space()) : space().read(flag_.data()) != 0;
+      return lists_tell_ ? data().neighbours.must_rebuild(space()) : space().read(flag_.data()) != 0;
     } else {
       return false;
     }
@@ -184,17 +174,17 @@ class part_of_simulation {
   /// Particles meet that need no copies, while those are under way, where that is the same.
   void meet_inside([[maybe_unused]] S dt) {
     if constexpr (any_pair_contact && !effects_type::makes) {
-      if (lists_tell_ && own() != 0) simulation_.meet_inside(with_copies(), dt);
+      if (lists_tell_ && own() != 0) phases().meet_inside(with_copies(), dt);
     }
   }
 
   /// The rest of a step.
   void end_step(S dt) {
     meet(dt);
-    if (own() != 0) simulation_.end_step(dt);
+    if (own() != 0) phases().end_step(dt);
   }
   /// Particles meet.
-  void meet(S dt) { simulation_.meet(with_copies(), dt); }
+  void meet(S dt) { phases().meet(with_copies(), dt); }
   /// True if particles of a source may not be born, which others must know before particles meet.
   bool refuses_births(S dt) const {
     return any_pair_contact && effects().due(static_cast<double>(dt)) > 0 && effects().makes_only_where_free();
@@ -203,24 +193,24 @@ class part_of_simulation {
   void settle_births(S dt) {
     if constexpr (any_pair_contact) {
       if (own() == 0) return;
-      simulation_.neighbours_.renew(space(), with_copies(), effects().space());
-      simulation_.settle_births(with_copies(), dt);
+      data().neighbours.renew(space(), with_copies(), effects().space());
+      phases().settle_births(with_copies(), dt);
     }
   }
   /// True if the next step knows what particles do to each other where it begins.
-  bool knows_pair_forces() const { return simulation_.knows_pair_forces(); }
+  bool knows_pair_forces() { return phases().knows_pair_forces(); }
 
   /// The memory of contacts of the rank's own particles. Waits.
   contact_rows contacts() const {
     contact_rows found;
     if constexpr (remembers_pairs || remembers_surfaces) {
       std::vector<id> const numbers = on_host<global_number>();
-      auto const& s = simulation_;
       if constexpr (remembers_pairs)
-        found.pairs = rows_of<contact_row<S, contact_width>>(s.neighbours_.save_contacts(s.space_, own()), numbers);
+        found.pairs =
+            rows_of<contact_row<S, contact_width>>(data().neighbours.save_contacts(data().space, own()), numbers);
       if constexpr (remembers_surfaces)
         found.surfaces =
-            rows_of<contact_row<S, contact_width + 3>>(s.surfaces_.save_contacts(s.space_, own()), numbers);
+            rows_of<contact_row<S, contact_width + 3>>(data().surfaces.save_contacts(data().space, own()), numbers);
     }
     return found;
   }
@@ -228,10 +218,8 @@ class part_of_simulation {
   void set_contacts([[maybe_unused]] contact_rows const& from) {
     if constexpr (remembers_pairs || remembers_surfaces) {
       std::vector<id> const numbers = on_host<global_number>();
-      if constexpr (remembers_pairs)
-        simulation_.neighbours_.restore_contacts(space(), contacts_of(from.pairs, numbers));
-      if constexpr (remembers_surfaces)
-        simulation_.surfaces_.restore_contacts(space(), contacts_of(from.surfaces, numbers));
+      if constexpr (remembers_pairs) data().neighbours.restore_contacts(space(), contacts_of(from.pairs, numbers));
+      if constexpr (remembers_surfaces) data().surfaces.restore_contacts(space(), contacts_of(from.surfaces, numbers));
       space().synchronize();
     }
   }
@@ -246,7 +234,7 @@ class part_of_simulation {
   template <class List>
   void pack(std::vector<std::uint32_t> const& places, rows<List>& to) {
     listed_places const listed{in_space(space(), places, place_memory_)};
-    detail::pack_on_host(space(), simulation_.state_, listed, places.size(), to);
+    detail::pack_on_host(space(), data().particles, listed, places.size(), to);
   }
 
   /// How many of its particles are somewhere: there, and at a point that is finite. Waits.
@@ -289,7 +277,7 @@ class part_of_simulation {
   /// Numbers of particles that leave, which rise, and where they go. Waits.
   std::vector<std::pair<id, int>> new_ranks(send_plan const& leaving) const {
     std::vector<pair> listed(leaving.size());
-    if (!listed.empty()) simulation_.space_.copy_to_host(listed.data(), leaving.data(), listed.size());
+    if (!listed.empty()) data().space.copy_to_host(listed.data(), leaving.data(), listed.size());
     std::vector<id> const numbers = on_host<global_number>();
     std::vector<std::pair<id, int>> found;
     for (pair const& route : listed) found.emplace_back(numbers[item_of(route)], rank_of(route));
@@ -324,8 +312,8 @@ class part_of_simulation {
     ensure_capacity(own() + n);
     copies_ = n;
     if constexpr (any_pair_contact) {
-      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_, n, border);
-      lists_tell_ = skin_ > 0 && simulation_.neighbours_.skin() >= skin_;
+      data().neighbours.clear(space(), own() + n, data().radii, n, border);
+      lists_tell_ = skin_ > 0 && data().neighbours.skin() >= skin_;
     }
     around_ = effects().space();
     knows_others_ = true;
@@ -333,7 +321,7 @@ class part_of_simulation {
     auto* const resource = space().resource();
     last_centres_.reserve(resource, 3 * capacity_);
     if constexpr (has_absent) last_there_.reserve(resource, capacity_);
-    space().for_each(own(), keep_places<S, state_type>{simulation_.state_, last()});
+    space().for_each(own(), keep_places<S, state_type>{data().particles, last()});
   }
 
   /// Writes what others know of particles.
@@ -346,16 +334,16 @@ class part_of_simulation {
   void unpack_seen(Space const& on, particle_row<S, seen_columns> const* from) {
     detail::unpack_particles(on, state(), places_from{own()}, copies_, from);
     if constexpr (any_pair_contact) {
-      if (lists_tell_ && own() != 0) simulation_.neighbours_.check_copies(on, with_copies());
+      if (lists_tell_ && own() != 0) data().neighbours.check_copies(on, with_copies());
     }
   }
 
  private:
   static constexpr S skin_fraction = S(0.1);  ///< of the largest diameter
 
-  state_type const& state() const { return simulation_.state_; }
+  state_type const& state() const { return data().particles; }
   state_type with_copies() const {
-    state_type all = simulation_.state_;
+    state_type all = data().particles;
     if constexpr (any_pair_contact) all.size += copies_;
     return all;
   }
@@ -386,16 +374,16 @@ class part_of_simulation {
   void start(std::size_t n, global_counts const& all, radii_of_all<S> const& radii) {
     std::size_t const capacity = n + static_cast<std::size_t>(all.free_size);
     describe(capacity, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), radii.common);
-    space().for_each(capacity, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free,
-                                                            simulation_.effects_.source_radius()});
+    space().for_each(capacity, number_places<S, state_type>{data().particles, n, all.first, all.first_free,
+                                                            data().effects.source_radius()});
     S const widest = radii.widest;
-    simulation_.radii_ = radii.range;
+    data().radii = radii.range;
     skin_ = skin_fraction * 2 * widest;
     reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
     copies_ = 0;
     knows_others_ = false;
-    if constexpr (remembers_pairs) simulation_.neighbours_.clear(space(), capacity, radii.range);
-    if constexpr (remembers_surfaces) simulation_.surfaces_.clear(space(), capacity);
+    if constexpr (remembers_pairs) data().neighbours.clear(space(), capacity, radii.range);
+    if constexpr (remembers_surfaces) data().surfaces.clear(space(), capacity);
   }
 
   /// Moves the last particles to the places of those that have left, from the `filled`-th on.
@@ -422,34 +410,34 @@ class part_of_simulation {
   /// Room for so many particles; the rank's own stay.
   void ensure_capacity(std::size_t n) {
     if (n <= capacity_) return;
-    state_type const old = simulation_.state_;
+    state_type const old = data().particles;
     double clock[clock_size] = {};
     if (old.time != nullptr) space().copy_to_host(clock, old.time, clock_size);
     rows<all_columns> kept;
     pack_on_host(space(), old, places_from{0}, old.own, kept);
     std::size_t const capacity = n + n / 4;
     capacity_ = 0;
-    simulation_.reserve(capacity);
+    prepare().reserve(capacity);
     capacity_ = capacity;
     describe(old.own, old.all_size, old.all_placed, old.common_radius);
-    if constexpr (Simulation::has_begin_step) {
-      simulation_.state_.time = simulation_.device_time_.data();
-      space().copy_from_host(simulation_.state_.time, clock, clock_size);
+    if constexpr (state_of_all::has_begin_step) {
+      data().particles.time = data().device_time.data();
+      space().copy_from_host(data().particles.time, clock, clock_size);
     }
-    space().for_each(padded_size(capacity), init_particles<S, all_columns>{simulation_.state_, {}, nullptr, S(0)});
+    space().for_each(padded_size(capacity), init_particles<S, all_columns>{data().particles, {}, nullptr, S(0)});
     unpack_from_host(space(), state(), places_from{0}, kept);
-    simulation_.is_set_ = true;
+    data().is_set = true;
   }
 
   void describe(std::size_t own, std::size_t all_size, std::size_t all_placed, S common) {
-    double* const time = simulation_.state_.time;
-    simulation_.state_ = simulation_.memory_.state(own, own, common);
-    simulation_.state_.time = time;
-    simulation_.state_.own = own;
-    simulation_.state_.all_size = all_size;
-    simulation_.state_.all_placed = all_placed;
+    double* const time = data().particles.time;
+    data().particles = data().memory.state(own, own, common);
+    data().particles.time = time;
+    data().particles.own = own;
+    data().particles.all_size = all_size;
+    data().particles.all_placed = all_placed;
   }
-  void resize_own(std::size_t n) { simulation_.state_.size = simulation_.state_.placed = simulation_.state_.own = n; }
+  void resize_own(std::size_t n) { data().particles.size = data().particles.placed = data().particles.own = n; }
 
   void look_for_moved() {
     std::uint32_t* const flag = flag_.reserve(space().resource(), 1);

@@ -7,18 +7,6 @@
 
 namespace collide::detail {
 
-/// Saves and restores the state of a simulation; see checkpoint.hpp.
-template <class Detector, class... Effect>
-class checkpoint;
-
-/// Runs the simulation that a rank has of that of all; see ranks/detail/part_of_simulation.hpp.
-template <class Simulation>
-class part_of_simulation;
-
-/// Sums over the contacts of a simulation's particles with the mesh; see energy.hpp.
-template <class Detector, class... Effect>
-struct mesh_contacts_of;
-
 /// True if `E` are the parameters of all effects, of which there are some.
 template <class Effects, class... E>
 inline constexpr bool are_all_of = sizeof...(E) > 0 && std::is_same<std::tuple<E...>, Effects>::value;

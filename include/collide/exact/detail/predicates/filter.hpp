@@ -11,7 +11,9 @@
 
 namespace collide::detail {
 
-enum class verdict { miss = 0, hit = 1, uncertain = 2 };
+/// Verdict of a filter: `uncertain` is left to more digits; `out_of_range`, of a filter without branches, to one that
+/// rescales the coordinates.
+enum class verdict { miss = 0, hit = 1, uncertain = 2, out_of_range = 3 };
 
 /// Assumptions of the filter in `T`.
 template <class T>

@@ -11,10 +11,11 @@
 /// largest is more than twice as large as the small ones, which are up to twice as large as the smallest, these are in
 /// a second grid of narrower cells, so that they do not pay for it: each looks into both grids, and a larger one into
 /// all cells of the small ones that it reaches (C. Ericson, "Real-Time Collision Detection", 2005, 7.2). Cells lie in a
-/// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
-/// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
-/// particles, and each particle looks into the 27 cells around it, in a box that repeats also around its images. What
-/// has too many neighbours for its list does so in each step.
+/// table of fixed size: cubes of 16 x 16 x 16 cells are spread over it by a hash function, so that any scene fits; in
+/// these, blocks of 16 x 2 x 2 cells follow a curve, so that near cells are near in memory. Particles are counted into
+/// the cells, each block takes as much of the order as it has particles, and each particle looks into the 27 cells
+/// around it, in a box that repeats also around its images. What has too many neighbours for its list does so in each
+/// step.
 ///
 /// Distances must be such that their squares neither overflow nor vanish: with floats, radii from 1e-17 to 1e18.
 ///

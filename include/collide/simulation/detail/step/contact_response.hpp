@@ -11,7 +11,6 @@
 
 #include <collide/simulation/detail/step/contact_search.hpp>
 #include <collide/simulation/detail/step/integrate.hpp>
-#include <collide/simulation/detail/step/wedge.hpp>
 
 namespace collide::detail {
 

@@ -13,7 +13,6 @@
 
 #include <collide/narrow/detail/intersects.hpp>
 #include <collide/narrow/detail/traits.hpp>
-#include <collide/simulation/detail/step/contact_key.hpp>
 #include <collide/simulation/detail/step/contact_scratch.hpp>
 #include <collide/simulation/detail/step/mesh_contact.hpp>
 #include <collide/simulation/detail/step/moving_surface.hpp>

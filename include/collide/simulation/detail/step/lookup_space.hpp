@@ -14,9 +14,7 @@ namespace detail {
 /// A space as a broad phase sees it that is asked for the triangles near single spheres: they are sorted, not the
 /// spheres, and into narrow cells, as a look-up is cheap and a candidate is not.
 template <class Space>
-struct lookup_space : Space {
-  explicit lookup_space(Space const& space) : Space(space) {}
-};
+struct lookup_space : Space {};
 
 template <class Space>
 inline constexpr bool serves_steps<lookup_space<Space>> = true;

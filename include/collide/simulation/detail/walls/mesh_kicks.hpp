@@ -7,26 +7,9 @@
 
 namespace collide::detail {
 
-/// Forgets what the mesh gave to a particle.
-template <class State>
-COLLIDE_HD_INLINE void forget_mesh_kicks([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
-  if constexpr (contains<typename State::list, mesh_kick_count>) {
-    if (state.at(mesh_kick_count{})[i] != 0) state.at(mesh_kick_count{})[i] = 0;
-  }
-}
-/// True if the kicks of a particle have none of the mesh in them.
-template <class State>
-COLLIDE_HD_INLINE bool has_no_mesh_kicks([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
-  if constexpr (contains<typename State::list, mesh_kick_count>) return state.at(mesh_kick_count{})[i] == 0;
-  return true;
-}
-
 /// The accelerations of a particle by the mesh where it meets it; nothing where nobody asks for them.
 template <class S, class Effects, bool Keeps = Effects::keeps_mesh_kicks>
-struct kicks_by_mesh {
-  template <class State>
-  COLLIDE_HD_INLINE void store(State const&, std::size_t) const {}
-};
+struct kicks_by_mesh {};
 template <class S, class Effects>
 struct kicks_by_mesh<S, Effects, true> {
   static constexpr int capacity = mesh_kicks::contacts;

@@ -12,7 +12,6 @@
 #include <collide/simulation/detail/step/mesh_ledger.hpp>
 #include <collide/simulation/detail/walls/mesh_kicks.hpp>
 #include <collide/simulation/detail/walls/overlap_list.hpp>
-#include <collide/simulation/detail/walls/surface_memory.hpp>
 
 namespace collide::detail {
 
@@ -132,6 +131,20 @@ struct pressing_list {
   std::uint32_t* count;
   pressing_particle* particles;
 };
+
+/// Forgets what the mesh gave to a particle.
+template <class State>
+COLLIDE_HD_INLINE void forget_mesh_kicks([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
+  if constexpr (contains<typename State::list, mesh_kick_count>) {
+    if (state.at(mesh_kick_count{})[i] != 0) state.at(mesh_kick_count{})[i] = 0;
+  }
+}
+/// True if the kicks of a particle have none of the mesh in them.
+template <class State>
+COLLIDE_HD_INLINE bool has_no_mesh_kicks([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
+  if constexpr (contains<typename State::list, mesh_kick_count>) return state.at(mesh_kick_count{})[i] == 0;
+  return true;
+}
 
 /// Kernel functor of `for_each` over `lanes` threads for each particle, side by side: lists those that meet the box of
 /// a triangle. These are few, and much work.
@@ -370,7 +383,7 @@ struct press_on_mesh {
     if constexpr (has_memory) {
       if (what == meeting::in_step) keep(i, kept, normals, bodies, values);
     }
-    kicks.store(state, i);
+    if constexpr (Effects::keeps_mesh_kicks) kicks.store(state, i);
     store(i, p, self);
   }
 
