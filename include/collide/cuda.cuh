@@ -16,11 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include <cooperative_groups.h>
 #include <cuda_runtime.h>
 
 #include <collide/spaces/cuda_memory.cuh>
-#include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/block.hpp>
 #include <collide/spaces/detail/cuda_block.cuh>
 #include <collide/spaces/detail/tuning.hpp>
@@ -87,22 +85,6 @@ __global__ void __launch_bounds__(threads_of_for_each, (min_blocks_per_sm<F, voi
   if (i < n) f(i);
 }
 
-/// How many blocks of `run_in_turn` a processor holds.
-inline constexpr int blocks_in_turn = 2;
-
-/// Goes through phases, if *condition is not 0: each begins when all threads are through the one before.
-template <class... F>
-__global__ void __launch_bounds__(threads_per_block, blocks_in_turn)
-    run_in_turn(std::uint32_t const* condition, phase<F>... phases) {
-  if (*condition == 0) return;
-  auto const all = cooperative_groups::this_grid();
-  auto const go_through = [&](auto const& now) {
-    for (std::size_t i = all.thread_rank(); i < now.n; i += all.num_threads()) now.f(i);
-    all.sync();
-  };
-  (go_through(phases), ...);
-}
-
 /// Kernel functor of `for_each` over bytes.
 struct fill_bytes {
   unsigned char* to;
@@ -166,19 +148,6 @@ class cuda_space {
     if (n == 0) return;
     launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n, threads_of_for_each), threads_of_for_each, n,
                   f);
-  }
-
-  /// Puts a kernel on the stream that calls f(i) for all i < n of each of the phases in turn, if *condition is not 0
-  /// then. Throws `cuda_error`.
-  template <class... F>
-  void in_turn_if_nonzero(std::uint32_t const* condition, phase<F> const&... phases) const {
-    cudaLaunchAttribute together{};
-    together.id = cudaLaunchAttributeCooperative;
-    together.val.cooperative = 1;
-    unsigned const most = static_cast<unsigned>(sm_count_ * blocks_in_turn);
-    launch_kernel("launch of run_in_turn", together, run_in_turn<F...>,
-                  std::min(most, grid_of(std::max({std::size_t{1}, phases.n...}), threads_per_block)),
-                  threads_per_block, condition, phases...);
   }
 
   /// Puts work on the stream that sets `bytes` bytes. A little is filled by a kernel: in a graph, between kernels, that
@@ -263,18 +232,13 @@ class cuda_space {
                      Parameters const&... arguments) const {
     cudaLaunchAttribute early{};
     early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-    early.val.programmaticStreamSerializationAllowed = has_pdl_ ? 1 : 0;
-    launch_kernel(call, early, kernel, blocks, threads, arguments...);
-  }
-  template <class... Parameters>
-  void launch_kernel(char const* call, cudaLaunchAttribute attribute, void (*kernel)(Parameters...), unsigned blocks,
-                     int threads, Parameters const&... arguments) const {
+    early.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
     config.gridDim = dim3(blocks);
     config.blockDim = dim3(static_cast<unsigned>(threads));
     config.stream = stream_;
-    config.attrs = &attribute;
-    config.numAttrs = 1;
+    config.attrs = &early;
+    config.numAttrs = has_pdl_ ? 1 : 0;
     cuda_check(cudaLaunchKernelEx(&config, kernel, arguments...), call);
   }
 

@@ -35,17 +35,17 @@ TEST_CASE("algorithms: for_each_block calls each number once") {
   }
 }
 
-TEST_CASE("algorithms: in_turn_if_nonzero does all or nothing, one phase after the other") {
+TEST_CASE("algorithms: for_each_if_nonzero does all or nothing") {
   for (std::uint32_t condition : {0u, 1u, 7u}) {
     for (std::size_t n : {0u, 1u, 255u, 10000u}) {
       std::vector<int> calls(n, 0);
-      std::size_t sum = 0;
-      phase const count{n, [&](std::size_t i) { calls[i] += static_cast<int>(i % 3); }};
-      phase const add{2 * n, [&](std::size_t i) { sum += static_cast<std::size_t>(calls[i / 2]); }};
-      in_turn_if_nonzero(collide::host(1), &condition, count, add);
-      std::size_t expected = 0;
-      for (std::size_t i = 0; i < n; ++i) expected += 2 * (i % 3);
-      CHECK(sum == (condition != 0 ? expected : 0));
+      auto* const to = calls.data();
+      for_each_if_nonzero(collide::host(1), &condition, n, [to](std::size_t i) { ++to[i]; });
+      // the kernel of a device, thread by thread, in fewer blocks than numbers
+      auto const count = [to](std::size_t i) { ++to[i]; };
+      for_each_if_nonzero_kernel<decltype(count)> const kernel{&condition, n, count, 3};
+      tests::lockstep<8, true>().launch(3, kernel);
+      CHECK(std::all_of(calls.begin(), calls.end(), [&](int c) { return c == (condition != 0 ? 2 : 0); }));
     }
   }
 }

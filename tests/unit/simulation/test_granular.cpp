@@ -72,10 +72,6 @@ struct afar : host {
   using host::host;
   static constexpr bool host_accessible = false;
   std::size_t saturating_blocks() const { return 4; }
-  template <class... F>
-  void in_turn_if_nonzero(std::uint32_t const* condition, collide::detail::phase<F> const&... phases) const {
-    if (*condition != 0) (for_each(phases.n, phases.f), ...);
-  }
 };
 
 }  // namespace

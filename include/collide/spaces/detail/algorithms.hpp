@@ -20,23 +20,39 @@ struct copy_values {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
 };
 
-/// f(i) for all i < n.
+/// Kernel functor: calls f(i) for all i < n if *condition is not 0, each thread for several i.
 template <class F>
-struct phase {
+struct for_each_if_nonzero_kernel {
+  static constexpr int items = 1;
+
+  std::uint32_t const* condition;
   std::size_t n;
   F f;
-};
-template <class F>
-phase(std::size_t, F) -> phase<F>;
+  std::size_t blocks;
 
-/// Goes through phases, one after the other, if *condition, in memory of the space, is not 0 when it is their turn;
-/// meant for what is seldom done.
-template <class Space, class... F>
-void in_turn_if_nonzero(Space const& space, std::uint32_t const* condition, phase<F> const&... phases) {
+  template <class Block>
+  struct scratch {};
+
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>&) const {
+    if (*condition == 0) return;
+    block.for_each_thread([&](int thread_rank) {
+      std::size_t const first = block.index() * Block::num_threads + static_cast<std::size_t>(thread_rank);
+      for (std::size_t i = first; i < n; i += blocks * Block::num_threads) f(i);
+    });
+  }
+};
+
+/// Calls f(i) for all i < n if *condition, in memory of the space, is not 0 when it is its turn; meant for what is
+/// seldom done.
+template <class Space, class F>
+void for_each_if_nonzero(Space const& space, std::uint32_t const* condition, std::size_t n, F const& f) {
   if constexpr (Space::host_accessible) {
-    if (*condition != 0) (space.for_each(phases.n, phases.f), ...);
+    if (*condition != 0) space.for_each(n, f);
   } else {
-    space.in_turn_if_nonzero(condition, phases...);
+    for_each_if_nonzero_kernel<F> kernel{condition, n, f, 0};
+    kernel.blocks = std::min(grid_size<Space>(n, kernel), space.saturating_blocks());
+    space.launch(kernel.blocks, kernel);
   }
 }
 

@@ -70,7 +70,7 @@ struct update_copies : update_and_check_skin<S, Effects> {
   }
 };
 
-/// Kernel functor of `in_turn_if_nonzero` over the table, which it empties, and over places in the old order: keeps
+/// Kernel functor of `for_each_if_nonzero` over the table, which it empties, and over places in the old order: keeps
 /// what contacts remember, by numbers.
 template <class S, class Effects>
 struct clear_cells {
@@ -101,7 +101,7 @@ struct clear_cells {
   }
 };
 
-/// Kernel functor of `in_turn_if_nonzero` over particles: counts them into cells, or, once blocks have their share of
+/// Kernel functor of `for_each_if_nonzero` over particles: counts them into cells, or, once blocks have their share of
 /// the order, copies them there.
 template <class S, class Effects, bool Fill>
 struct count_or_scatter {
@@ -148,7 +148,7 @@ struct count_or_scatter {
   }
 };
 
-/// Kernel functor of `in_turn_if_nonzero` over places in the order: lists what is near.
+/// Kernel functor of `for_each_if_nonzero` over places in the order: lists what is near.
 template <class S, class Effects>
 struct build_lists {
   sorted_particles<S, Effects> order;

@@ -178,18 +178,15 @@ class verlet_list {
       if (*rebuild != 0) pairs_.keep(o);
     }
     std::size_t const in_table = blocks_ * cells::stride;
-    phase const clear{std::max(n, in_table), clear_cells<S, Effects>{o, in_table}};
-    phase const count{n, count_or_scatter<S, Effects, false>{state, o}};
-    phase const scan{blocks_, scan_cells{o.ends, &o.header->count}};
-    phase const fill{n, count_or_scatter<S, Effects, true>{state, o}};
-    phase const build{n, build_lists<S, Effects>{o, skin_}};
+    for_each_if_nonzero(space, rebuild, std::max(n, in_table), clear_cells<S, Effects>{o, in_table});
+    for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
     if constexpr (works_alone<Space>) {
-      in_turn_if_nonzero(space, rebuild, clear, count);
       if (*rebuild != 0) scan_along_curve(o);
-      in_turn_if_nonzero(space, rebuild, fill, build);
     } else {
-      in_turn_if_nonzero(space, rebuild, clear, count, scan, fill, build);
+      for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
     }
+    for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
+    for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
     if constexpr (Once || (order::has_memory && Space::host_accessible)) {
       if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
     }
