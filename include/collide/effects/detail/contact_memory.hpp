@@ -206,7 +206,7 @@ class contact_memory {
                bool side_by_side) {
     std::size_t const items = listed * particles + in_runs;
     numbers_.reserve(resource, std::size_t(width) * items);
-    items_ = side_by_side ? items : 0;
+    are_side_by_side_ = side_by_side;
     kept_.reserve(resource, items);
     touching_.reserve(resource, particles);
     kept_of_.reserve(resource, particles);
@@ -236,11 +236,11 @@ class contact_memory {
   }
 
  private:
-  std::size_t items_apart() const { return items_ != 0 ? 1 : std::size_t(width); }
-  std::size_t numbers_apart() const { return items_ != 0 ? items_ : 1; }
+  std::size_t items_apart() const { return are_side_by_side_ ? 1 : std::size_t(width); }
+  std::size_t numbers_apart() const { return are_side_by_side_ ? numbers_.capacity() / std::size_t(width) : 1; }
 
   buffer<S> numbers_;
-  std::size_t items_ = 0;  ///< where they are side by side
+  bool are_side_by_side_ = false;
   buffer<kept_contact<S, List>> kept_;
   buffer<std::uint32_t> touching_;
   buffer<kept_range> kept_of_;
