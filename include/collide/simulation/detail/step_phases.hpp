@@ -162,8 +162,9 @@ class step_phases {
   /// Frees particles that stick to the mesh and do not touch it any more.
   void release_stuck() {
     if constexpr (effects_type::adheres) {
-      for_each(detail::release_stuck{s_.particles, mesh_ref<effects_type::any_mesh_contact>(s_, S(0)),
-                                     s_.bodies.are_driven(), s_.bodies.size()});
+      auto const triangles = mesh_ref<effects_type::any_mesh_contact>(s_, S(0));
+      for_each(detail::release_stuck<particles_type, std::decay_t<decltype(triangles)>>{
+          s_.particles, triangles, s_.bodies.are_driven(), s_.bodies.size()});
     }
   }
 
