@@ -194,8 +194,6 @@ struct release_stuck {
     return contact_double(near.mesh[triangle], seen).depth >= 0;
   }
 };
-template <class State, class Triangles>
-release_stuck(State, Triangles, bool, std::size_t) -> release_stuck<State, Triangles>;
 
 template <class S, class All, class Effects>
 init_particles<S, All> initial(particle_state<S, All> const& state, sphere_view<S> const& spheres, S const* velocities,
