@@ -1,7 +1,7 @@
 /// \file
 /// Uniaxial compression: grains of many sizes in a box with smooth walls, under a lid that a servo holds at rising
 /// stresses. Prints strain, solid fraction, coordination number, and the stress of the walls over that of the lid, from
-/// the fields inside of the bed.
+/// the fields inside of the bed; and last the distribution of normal forces.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -85,5 +85,14 @@ int main() {
                 (f.contact_stress[0][0] + f.contact_stress[1][1]) / (2 * vertical));
     holds = holds && std::abs(sum / area / wanted - 1) < 0.02 && vertical > wanted && vertical < 1.2 * wanted + 1000;
   }
+
+  auto const forces = normal_forces(bed);
+  double mean = 0;
+  for (double const f : forces) mean += f / static_cast<double>(forces.size());
+  double density[8] = {};  // of probability, in bins of half the mean
+  for (double const f : forces) density[std::clamp(static_cast<int>(2 * f / mean), 0, 7)] += 2.0 / double(forces.size());
+  std::printf("%zu normal forces of %.3f N in the mean, in bins of half of it:", forces.size(), mean);
+  for (double const p : density) std::printf(" %.3f", p);
+  std::printf("\n");
   return holds ? 0 : 1;
 }

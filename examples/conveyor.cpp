@@ -24,7 +24,7 @@ constexpr double size = 0.012, duration = 0.008;
 constexpr double half = 0.12;  // of the belts' width
 
 constexpr auto make = [](auto space, io::film const& film) {
-  return conveyor<decltype(space)>(space, emit{film.rate(), {{-0.48, 0, 0.3}, 0.07, {0, 0, -0.5}, 0.1}}, gravity{},
+  return conveyor<decltype(space)>(space, emit{film.rate(), {{-0.48, 0, 0.18}, 0.06, {0, 0, -0.5}, 0.05}}, gravity{},
                                    sphere_contact::from_restitution(0.3, duration, size, 2500, 0.5), bounce{0.2},
                                    friction{0.7, 0.6}, moving_bodies<>{});
 };
@@ -49,7 +49,7 @@ io::film scene() {
   io::film film{"conveyor", "Belts carry grains to a table that turns.", {}, duration / 20, 1'500, 12, 0.7};
   auto& s = film.stage;
   s.radius = size;
-  io::point const foot{-0.65, -half, 0.02}, rise{0.8, 0, 0.29}, height{0, 0, 0.08}, width{0, 2 * half, 0};
+  io::point const foot{-0.65, -half, 0.02}, rise{0.8, 0, 0.29}, height{0, 0, 0.12}, width{0, 2 * half, 0};
   io::point const start{0.47, -0.16, 0.12}, level{0, 0.9, 0}, depth{-0.3, 0, 0};
   io::point const table{0.32, 1.15, -0.1};
   constexpr double radius = 0.42, rim = 0.07;

@@ -4,13 +4,15 @@
 ///
 /// Usage: mill_film FOLDER [GRAINS [TURNS [FRAMES [SECONDS]]]]: torque.csv has torque and power of the motor, mill.json
 /// the costs, walls.vtp the mill as it begins, and film.pvd as many frames of the last twelfth of a turn, which
-/// repeats. It stops sooner if all steps would take longer than so many seconds. scripts/render-mill draws it.
+/// repeats. It stops sooner if all steps would take longer than so many seconds. All files are whole after each frame.
+/// scripts/render-mill draws them.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <future>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -43,7 +45,7 @@ using law = granular_contact<hertz, mindlin, epsd>;
 using mill = simulation<detector<bucket, karabassi<>, space_type, double>, polydisperse, gravity, law, reaction,
                         moving_bodies<>, velocity_verlet>;
 
-constexpr double outer = 0.5, half = 0.2, lifter = 0.035;  // of the mill, in metres; its axis is y
+constexpr double outer = 0.5, deep = 0.2, lifter = 0.035;  // of the mill, in metres; its axis is y
 constexpr int lifters = 12, sides = 16 * lifters;
 constexpr double tilt = 0.65, surface = -0.13;  // of the bed: its slope, how far from the axis
 
@@ -53,16 +55,18 @@ io::scene walls() {
   io::add_tube(s, sides, 2, [](std::size_t k, double angle) {
     long const side = std::lround(angle / (2 * io::pi) * sides);
     double const r = side % (sides / lifters) < 2 ? outer - lifter : outer;
-    return io::point{r * std::cos(angle), k == 0 ? -half : half, r * std::sin(angle)};
+    return io::point{r * std::cos(angle), k == 0 ? -deep : deep, r * std::sin(angle)};
   });
-  for (double const end : {-half, half})
+  for (double const end : {-deep, deep})
     io::add_plate(s, {-outer, end, -outer}, {2 * outer, 0, 0}, {0, 0, 2 * outer}, 1, 1);
   return s;
 }
 
-/// The part of the mill below a level, as `fill` takes it.
+/// The part of the mill below a level, from y to y, as `fill` takes it.
 struct bed_region : cylinder_region {
-  bed_region() : cylinder_region({0, -half, 0}, {0, half, 0}, outer - lifter) { upper[2] = surface; }
+  bed_region(double begin, double end) : cylinder_region({0, begin, 0}, {0, end, 0}, outer - lifter) {
+    upper[2] = surface;
+  }
   double volume() const {
     double const part = std::acos(-surface / radius);  // of the angle of a segment, a half
     return (radius * radius * part + surface * std::sqrt(radius * radius - surface * surface)) * length();
@@ -73,6 +77,27 @@ struct bed_region : cylinder_region {
     return found;
   }
 };
+
+/// A bed of so many grains with a mean radius: slices beside each other, each laid by a thread.
+filling laid(std::size_t wanted, double usual) {
+  auto const slices = static_cast<std::size_t>(std::max(1.0, 2 * deep / (40 * usual)));
+  std::vector<std::future<filling>> parts;
+  for (std::size_t k = 0; k < slices; ++k)
+    parts.push_back(std::async(std::launch::async, [=] {
+      auto const side = [&](std::size_t i) {
+        return deep * (2 * static_cast<double>(i) / static_cast<double>(slices) - 1);
+      };
+      return fill_number(bed_region(side(k), side(k + 1)), size_distribution::uniform(0.8 * usual, 1.18 * usual),
+                         wanted * (k + 1) / slices - wanted * k / slices, k);
+    }));
+  filling all;
+  for (auto& part : parts) {
+    filling const found = part.get();
+    all.centres.insert(all.centres.end(), found.centres.begin(), found.centres.end());
+    all.radii.insert(all.radii.end(), found.radii.begin(), found.radii.end());
+  }
+  return all;
+}
 
 /// Writes what the renderer needs of all grains.
 void write_frame(std::string const& path, mill const& of) {
@@ -104,9 +129,9 @@ int main(int argc, char** argv) try {
   double const most_seconds = argc > 5 ? std::atof(argv[5]) : 1e9;
   constexpr double rate = 3.2, density = 2700;  // 0.72 of the critical speed
 
-  bed_region const bed;
-  double const usual = std::cbrt(0.48 * bed.volume() / static_cast<double>(wanted) * 3 / (4 * io::pi));
-  auto grains = fill_number(bed, size_distribution::uniform(0.8 * usual, 1.18 * usual), wanted);
+  double const usual =
+      std::cbrt(0.48 * bed_region(-deep, deep).volume() / static_cast<double>(wanted) * 3 / (4 * io::pi));
+  auto grains = laid(wanted, usual);
   std::fprintf(stderr, "%zu grains laid after %.1f s\n", wanted, seconds());
   std::vector<double> moving;
   for (std::size_t i = 0; i < grains.centres.size(); i += 3) {
@@ -147,30 +172,33 @@ int main(int argc, char** argv) try {
   std::ofstream curve(folder + "torque.csv");
   curve << "time,turns,torque,power\n";
   std::vector<vtk_frame> film;
+  char line[512] = "";
   double spent = 0;
   for (int k = 1; k <= last; ++k) {
     forces.clear(space);
     double const start = seconds();
     made.steps(every, dt);
     space.synchronize();
-    spent += seconds() - start;
-    if (seconds() + frames * (spent / k + per_frame) > most_seconds) last = std::min(last, k + frames);
-    if (k % frames == 1) std::fprintf(stderr, "%d of %d rows after %.1f s\n", k, last, seconds());
+    double const took = seconds() - start;
+    spent += took;
+    if (seconds() + frames * (took + per_frame) > most_seconds) last = std::min(last, k + frames);
+    std::size_t const steps = every * static_cast<std::size_t>(k);
+    if (k % frames == 1 || k == last)
+      std::fprintf(stderr, "%d of %d rows after %.1f s, %.1f steps a second\n", k, last, seconds(),
+                   static_cast<double>(every) / took);
     double const torque = -forces.read(space)[0].angular[1] / row;
     curve << made.time() << "," << static_cast<double>(k) / rows << "," << torque << "," << torque * rate << std::endl;
     if (k <= last - frames) continue;
     film.push_back({"grains-" + std::to_string(1000 + film.size()) + ".vtp", made.time()});
     write_frame(folder + film.back().file, made);
+    write_vtk_film(folder + "film.pvd", film);
+    std::snprintf(line, sizeof line,
+                  "{\"particles\": %zu, \"triangles\": %zu, \"steps\": %zu, \"dt\": %.6g, \"ms_per_step\": %.6g, "
+                  "\"rate\": %g, \"mean_radius\": %.6g, \"device\": \"%s\"}\n",
+                  made.size(), s.triangle_count(), steps, dt, 1e3 * spent / static_cast<double>(steps), rate, usual,
+                  device::name().c_str());
+    std::ofstream(folder + "mill.json") << line;
   }
-  write_vtk_film(folder + "film.pvd", film);
-  std::size_t const steps = every * static_cast<std::size_t>(last);
-  char line[512];
-  std::snprintf(line, sizeof line,
-                "{\"particles\": %zu, \"triangles\": %zu, \"steps\": %zu, \"dt\": %.6g, \"ms_per_step\": %.6g, "
-                "\"rate\": %g, \"mean_radius\": %.6g, \"device\": \"%s\"}\n",
-                made.size(), s.triangle_count(), steps, dt, 1e3 * spent / static_cast<double>(steps), rate, usual,
-                device::name().c_str());
-  std::ofstream(folder + "mill.json") << line;
   std::fputs(line, stdout);
 } catch (std::exception const& e) {
   std::fprintf(stderr, "%s\n", e.what());

@@ -65,6 +65,7 @@ void bind_simulation(nb::module_& m, char const* name) {
   bind_call(c, "set_parameter", &simulation_base::set_parameter);
   bind_call(c, "set_mesh", &type::set_mesh);
   bind_call(c, "set", &type::set);
+  bind_call(c, "set_clumps", &type::set_clumps);
   bind_call(c, "columns", &type::columns);
   bind_call(c, "column", &type::column_of);
   bind_call(c, "assign", &type::assign);

@@ -112,6 +112,14 @@ class simulation : public called<Space> {
     return give(data, nb::dtype<std::int32_t>(), {n, 2}, owner_of(std::move(own)), runtime_.at(), numpy);
   }
 
+  bool set_clumps(std::vector<double> const& shapes, std::vector<double> const& placed, std::size_t waiting) {
+    if (is_shown()) return false;
+    without_gil const others_run;
+    if (!one().set_clumps(shapes, placed, waiting))
+      throw collide::error("collide: set_clumps needs clumps in the list");
+    return true;
+  }
+
   bool load(std::string const& path) {
     if (is_shown()) return false;
     without_gil const others_run;

@@ -38,6 +38,12 @@ class simulation_base {
   virtual void set_mesh(void const* mesh, void const* bodies, std::size_t body_count) = 0;
   /// `spheres` is a collide::sphere_view; velocities are packed, or null.
   virtual void set(void const* spheres, void const* velocities, std::size_t capacity) = 0;
+  /// Puts clumps in place of all particles. Of each shape: how many spheres, the volume, three moments of inertia, the
+  /// quaternion of its frame, and x, y, z, r of the spheres; of each clump: its shape, centre, quaternion, velocity,
+  /// angular velocity and scale, 15 numbers; the last ones wait. False, and nothing has changed, in a list without
+  /// clumps.
+  virtual bool set_clumps(std::vector<double> const& shapes, std::vector<double> const& placed,
+                          std::size_t waiting) = 0;
   virtual void steps(std::size_t n, double dt) = 0;
   virtual std::size_t size() = 0;
   virtual double time() = 0;

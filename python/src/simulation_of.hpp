@@ -17,6 +17,7 @@
 #include <collide/simulation.cuh>
 #include <collide/simulation/checkpoint.hpp>
 #include <collide/simulation/energy.hpp>
+#include <collide/simulation/place_clumps.hpp>
 
 #include "simulation_base.hpp"
 
@@ -92,6 +93,32 @@ class simulation_of final : public simulation_base {
     one_.set(*static_cast<collide::sphere_view<S> const*>(spheres), static_cast<S const*>(velocities), capacity);
     clear_all();
   }
+  bool set_clumps([[maybe_unused]] std::vector<double> const& shapes,
+                  [[maybe_unused]] std::vector<double> const& placed, [[maybe_unused]] std::size_t waiting) override {
+    if constexpr (has_clumps) {
+      std::vector<collide::clump_shape> of;
+      for (double const* from = shapes.data(); from != shapes.data() + shapes.size();) {
+        collide::clump_shape& shape = of.emplace_back();
+        auto const count = static_cast<std::size_t>(*from++);
+        shape.volume = *from++;
+        from = take(from, shape.inertia);
+        from = take(from, shape.frame.rotation);  // its position is that of the centre of mass, as for Python
+        for (std::size_t k = 0; k < count; ++k, from += 4)
+          shape.spheres.push_back({{from[0], from[1], from[2]}, from[3]});
+      }
+      std::vector<collide::placed_clump> all(placed.size() / 15);
+      double const* from = placed.data();
+      for (collide::placed_clump& c : all) {
+        c.shape = static_cast<std::size_t>(*from++);
+        from = take(take(from, c.at.position), c.at.rotation);
+        from = take(take(from, c.moving.linear), c.moving.angular);
+        c.scale = *from++;
+      }
+      collide::set_clumps(one_, of, all, waiting);
+      clear_all();
+    }
+    return has_clumps;
+  }
   void steps(std::size_t n, double dt) override { one_.steps(n, static_cast<S>(dt)); }
 
   std::size_t size() override { return one_.size(); }
@@ -147,8 +174,15 @@ class simulation_of final : public simulation_base {
   }
 
  private:
+  static constexpr bool has_clumps = type::effects_type::has_clumps;
   template <class Column>
   using element = collide::detail::column_element<Column, S>;
+
+  template <std::size_t N>
+  static double const* take(double const* from, double (&to)[N]) {
+    std::copy(from, from + N, to);
+    return from + N;
+  }
 
   template <class E>
   void set(parameter_setter const& setter) {
@@ -172,7 +206,17 @@ class simulation_of final : public simulation_base {
   template <class... Column>
   void assign(std::size_t i, void const* values, collide::columns<Column...>) {
     std::size_t number = 0;
-    ((number++ == i ? one_.template assign<Column>(static_cast<element<Column> const*>(values)) : void()), ...);
+    ((number++ == i ? assign<Column>(static_cast<element<Column> const*>(values)) : void()), ...);
+  }
+  template <class Column>
+  void assign(element<Column> const* values) {
+    using of_spheres =
+        collide::columns<collide::position, collide::velocity, collide::angular_velocity, collide::radius>;
+    if constexpr (has_clumps && collide::detail::contains<of_spheres, Column>) {
+      throw collide::error("collide: set_clumps says where the spheres of clumps are, and how they move");
+    } else {
+      one_.template assign<Column>(values);
+    }
   }
 
   type one_;

@@ -56,7 +56,7 @@ def test_every_effect_of_the_library_is_there():
     headers = {path.relative_to(HERE / "include").as_posix() for path in (HERE / "include/collide/effects").rglob("*.hpp")
                if "detail" not in path.parts}
     named = {word for effect in every for word in effect.code.replace("<", " ").replace(">", " ").split() if "/" in word}
-    of_no_effect = ["columns", "effect", "granular/materials", "clumps"]  # clumps are placed from C++ only
+    of_no_effect = ["columns", "effect", "granular/materials"]
     assert headers - named == {f"collide/effects/{name}.hpp" for name in of_no_effect}
 
 

@@ -1,4 +1,4 @@
-// expect: collide: clumps: sleep, emit and absorbing_box do not know them yet
+// expect: collide: clumps: sleep, and effects that make or leave out particles
 #include <collide/bucket.cuh>
 #include <collide/effects/clumps.hpp>
 #include <collide/effects/granular_contact.hpp>

@@ -68,9 +68,9 @@ using list_29 = scene_list<mesh_kind::moving, collide::karabassi_swept<>, double
 using list_30 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
     collide::velocity_verlet, collide::gravity, collide::granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>, collide::wear<>, collide::contact_work<>, collide::mesh_forces, collide::reaction, collide::polydisperse, collide::lost, collide::moving_bodies<>>;
 using list_31 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
-    collide::velocity_verlet, collide::gravity, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::clumps, collide::mesh_forces, collide::reaction, collide::pair_forces, collide::lost, collide::moving_bodies<>>;
+    collide::velocity_verlet, collide::gravity, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::clumps, collide::contact_work<>, collide::mesh_forces, collide::reaction, collide::pair_forces, collide::lost, collide::periodic_box, collide::moving_bodies<>>;
 using list_32 = scene_list<mesh_kind::driven, collide::karabassi<>, float,
-    collide::velocity_verlet, collide::gravity, collide::drag, collide::wind<>, collide::granular_contact<collide::linear, collide::cundall_strack, collide::marshall<collide::epsd>>, collide::wear<>, collide::clumps, collide::polydisperse, collide::lost_motion, collide::mesh_forces, collide::periodic_box, collide::moving_bodies<collide::driven>>;
+    collide::velocity_verlet, collide::gravity, collide::wind<>, tests::pairs::stirs, collide::granular_contact<collide::linear, collide::cundall_strack, collide::marshall<collide::epsd>>, collide::wear<>, collide::clumps, collide::mass_flow<>, collide::absorbing_box, collide::polydisperse, collide::lost_motion, collide::mesh_forces, collide::moving_bodies<collide::driven>>;
 using list_33 = scene_list<mesh_kind::driven, collide::karabassi<>, float,
     collide::sleep, collide::gravity, collide::emit, collide::granular_contact<collide::linear, collide::dashpot>, collide::wear<>, collide::contact_work<>, collide::lost, collide::reaction, collide::periodic_box, collide::moving_bodies<collide::driven>>;
 using list_34 = scene_list<mesh_kind::fixed, collide::karabassi<>, float,

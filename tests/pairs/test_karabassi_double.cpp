@@ -22,4 +22,4 @@ static bool const list_25_is_hunted = hunt<list_25>("25", "sphere_contact sleep 
 TEST_CASE("pairs: list 30") { check_list<list_30>(); }
 static bool const list_30_is_hunted = hunt<list_30>("30", "velocity_verlet gravity granular_contact wear contact_work mesh_forces reaction polydisperse lost");
 TEST_CASE("pairs: list 31") { check_list<list_31>(); }
-static bool const list_31_is_hunted = hunt<list_31>("31", "velocity_verlet gravity granular_contact clumps mesh_forces reaction pair_forces lost");
+static bool const list_31_is_hunted = hunt<list_31>("31", "velocity_verlet gravity granular_contact clumps contact_work mesh_forces reaction pair_forces lost periodic_box");

@@ -25,6 +25,7 @@ struct absorb {
 struct absorbing_box {
   using reads = columns<position>;
   using writes = columns<alive>;
+  static constexpr bool sees_clumps = true;  ///< a clump as one sphere
 
   double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; not above `upper`
   double upper[3] = {0, 0, 0};  ///< the corner of the largest coordinates

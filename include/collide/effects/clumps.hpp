@@ -3,6 +3,7 @@
 #pragma once
 
 #include <collide/effects/detail/effect_list.hpp>
+#include <collide/exact/detail/numeric/random.hpp>
 
 namespace collide {
 
@@ -24,8 +25,7 @@ struct clump_rotation {
   using value = detail::several<S, 4>;
 };
 
-/// The principal moments of inertia over the mass, length squared; and the cube of the radius of a sphere of the same
-/// volume.
+/// The principal moments of inertia over the mass, length squared; and the radius of a sphere of the same volume.
 struct clump_inertia {
   template <class S>
   using value = detail::several<S, 4>;
@@ -33,22 +33,51 @@ struct clump_inertia {
 
 /// Spheres move in clumps, as `set_clumps` has placed them (place_clumps.hpp); the others are grains by themselves. A
 /// clump has the density of its spheres' material, and the volume of its shape. The spheres of one have consecutive
-/// numbers and do not meet each other. What they meet, and the mesh, acts on them as on single spheres: dashpots know a
-/// sphere's mass, not the clump's. Forces are summed in the order of the spheres. All other effects that accelerate,
-/// such as `gravity` and `drag`, do so at the centre of mass.
+/// numbers and do not meet each other. What they meet, and the mesh, acts on them as on spheres of the clump's mass.
+/// Forces are summed in the order of the spheres, those of effects too that know more of a sphere than its motion, such
+/// as `external_forces`. Other effects that accelerate, such as `gravity` and `drag`, do so at the centre of mass. For
+/// `mass_flow` and `absorbing_box` a clump is a sphere of its volume at its centre.
 ///
 /// With `velocity_verlet` and contact by forces, `granular_contact` or `sphere_contact`. Between the half kicks a clump
 /// turns freely by a symplectic splitting into rotations around its principal axes (A. Dullweber, B. Leimkuhler and
 /// R. McLachlan, Journal of Chemical Physics 107, 1997), of second order: its energy goes up and down and does not
-/// drift, and its angular momentum is the same to the bit. The step must be short beside a turn. 20 scalars a sphere.
+/// drift, and its angular momentum is the same to the bit. The step must be short beside a turn. 21 scalars a sphere.
 struct clumps {
-  using writes = columns<position, velocity, angular_velocity, in_clump, clump_offset, clump_centre, clump_velocity,
-                         clump_momentum, clump_rotation, clump_inertia>;
+  using writes = columns<position, velocity, angular_velocity, in_clump, clump_mass, clump_offset, clump_centre,
+                         clump_velocity, clump_momentum, clump_rotation, clump_inertia>;
 
   double reach = 0;  ///< of any clump from its centre to a sphere's surface, at most: `set_clumps` sets it
 };
 
+/// A rotation at random, all equally likely, always the same for a number: w, x, y, z into `rotation`. G. Marsaglia,
+/// Annals of Mathematical Statistics 43, 1972.
+COLLIDE_HD_INLINE void turn_at_random(double (&rotation)[4], std::uint64_t number) {
+  double squares[2], found[4];
+  for (int half = 0; half < 2; ++half) {
+    for (std::uint64_t trial = 0;; ++trial) {  // a point in the unit disc
+      std::uint64_t const n = (number << 20) + (std::uint64_t(half) << 18) + 2 * trial;
+      for (int k = 0; k < 2; ++k) found[2 * half + k] = 2 * detail::random_fraction(n + std::uint64_t(k)) - 1;
+      squares[half] = found[2 * half] * found[2 * half] + found[2 * half + 1] * found[2 * half + 1];
+      if (squares[half] < 1 && squares[half] > 0) break;
+    }
+  }
+  double const part = detail::sqrt_rn(detail::div_rn(1 - squares[0], squares[1]));
+  for (int k = 0; k < 4; ++k) rotation[k] = k < 2 ? found[k] : found[k] * part;
+}
+
 namespace detail {
+
+/// How many spheres have the clump that begins at a place; 1 if that is of a grain by itself.
+template <class State>
+COLLIDE_HD_INLINE std::size_t spheres_of_clump([[maybe_unused]] State const& state,
+                                               [[maybe_unused]] std::size_t place) {
+  std::size_t n = 1;
+  if constexpr (contains<typename State::list, in_clump>) {
+    id const* const first = state.at(in_clump{});
+    while (place + n < state.size && first[place] == place && first[place + n] == place) ++n;
+  }
+  return n;
+}
 
 /// The axes of a frame, that are its unit vectors in space, of a unit quaternion w, x, y, z.
 template <class S>

@@ -179,6 +179,19 @@ struct in_clump {
   static constexpr id initial = no_id;  ///< of a grain by itself
 };
 
+/// The mass of a sphere's clump over that of the sphere by itself: dashpots know it. 1 of a grain by itself.
+struct clump_mass : detail::number_column {
+  template <class S>
+  static constexpr S initial = S(1);
+};
+
+/// By how much the last half kick by contacts has changed the velocity of a sphere of a clump. Scenes have it and the
+/// next one that name `clumps` and `contact_work`.
+struct clump_push : detail::vector_column {};
+
+/// By how much it has changed the angular velocity.
+struct clump_turn : detail::vector_column {};
+
 /// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
 struct global_number {
   template <class S>

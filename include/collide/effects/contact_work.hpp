@@ -59,7 +59,7 @@ struct wall_work : detail::sum_column {};
 template <class Materials = one_density>
 struct contact_work {
   using reads = detail::union_of<columns<position, velocity, angular_velocity>, typename Materials::reads>;
-  using optional_reads = columns<radius>;
+  using optional_reads = columns<radius, in_clump, clump_push, clump_turn>;
   using writes = columns<detail::pairs_push, detail::pairs_turn, detail::walls_push, detail::walls_turn,
                          detail::slide_push, detail::slide_turn, detail::walls_give, detail::next_kick_takes,
                          detail::next_kick_gives, normal_work, sliding_work, rolling_work, wall_work>;
@@ -120,9 +120,13 @@ struct contact_work {
     if constexpr (!has_half_kicks && Forces::have_contacts) kicked += rounded_to<S>(push);
     double const r = static_cast<double>(p.radius()),
                  mass = sphere_mass(1.0, r) * made_of.template density_of<double>(p);
+    vec3<double> half_push = push * (kick / 2), half_turn = turn * (kick / 2);  // of the kick
+    if constexpr (Particle::template has<clump_push>) {
+      if (p[in_clump{}] != no_id) half_push = exact<S>(p[clump_push{}]) / 2, half_turn = exact<S>(p[clump_turn{}]) / 2;
+    }
     auto const taken_by_kick = [&](double side) {  // -1: before `kicked`, 1: after it
-      vec3<double> const v = exact<S>(kicked) + push * (side * kick / 2),
-                         w = (exact<S>(p[angular_velocity{}]) + turn * (side * kick / 2)) * (0.4 * r * r);
+      vec3<double> const v = exact<S>(kicked) + half_push * side,
+                         w = (exact<S>(p[angular_velocity{}]) + half_turn * side) * (0.4 * r * r);
       return vec3<double>(
           (give - vec3<double>(dot(push - slide, v), dot(slide, v) + dot(turn - roll, w), dot(roll, w))) * kick);
     };

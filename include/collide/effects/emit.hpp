@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include <collide/effects/clumps.hpp>
 #include <collide/effects/detail/particle.hpp>
 #include <collide/effects/effect.hpp>
 #include <collide/exact/detail/numeric/random.hpp>
@@ -52,10 +53,11 @@ struct emit_particles {
   bool only_free;     ///< none makes room
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::uint64_t const begin = begun(), n = begin_in_step(state.time, due), capacity = state.size - state.placed;
-    if (i >= n) return;
+    std::uint64_t const begin = begun(), n = begin_in_step(state.time, due);
+    std::size_t const spheres = spheres_of_clump(state, state.placed), capacity = (state.size - state.placed) / spheres;
+    if (i >= n || i >= capacity) return;
     std::uint64_t const number = only_free ? begin + i : begin + n - 1 - i;
-    store_at(state.placed + static_cast<std::size_t>(number % capacity), number, (n - 1 - i) / capacity);
+    store_at(state.placed + spheres * static_cast<std::size_t>(number % capacity), number, (n - 1 - i) / capacity);
   }
 
  protected:
@@ -69,6 +71,7 @@ struct emit_particles {
         fetch_add(state.time + clock_not_born, static_cast<double>(others + (is_taken ? 1 : 0)));
       if (is_taken) return;
     }
+    if (begins_as_clump(place, number)) return;
     particle<S, typename State::list> p;
     set_initial_values(p);
     p[alive{}] = mark;
@@ -76,6 +79,33 @@ struct emit_particles {
     source(number, p[position{}], p[velocity{}]);
     if constexpr (contains<typename State::list, global_number>) p[global_number{}] = state.at(global_number{})[place];
     state.store(p, place, typename State::list{});
+  }
+
+ private:
+  /// Lets a clump begin whose spheres are at a place, turned at random; false if it is a sphere's.
+  COLLIDE_HD_INLINE bool begins_as_clump([[maybe_unused]] std::size_t place,
+                                         [[maybe_unused]] std::uint64_t number) const {
+    if constexpr (contains<typename State::list, in_clump>) {
+      if (state.at(in_clump{})[place] == no_id) return false;
+      using kept = columns<radius, material, in_clump, clump_mass, clump_offset, clump_inertia>;
+      using begun_anew = difference_of<typename State::list, kept>;
+      particle<S, begun_anew> p;
+      set_initial_values(p);
+      p[alive{}] = mark;
+      source(number, p[clump_centre{}], p[clump_velocity{}]);
+      double turn[4];
+      turn_at_random(turn, number);
+      for (int k = 0; k < 4; ++k) p[clump_rotation{}].of[k] = S(turn[k]);
+      turned_axes<S> const axes(p[clump_rotation{}]);
+      p[velocity{}] = p[clump_velocity{}];
+      for (std::size_t n = spheres_of_clump(state, place); n-- > 0;) {
+        S const* const offset = state.at(clump_offset{}) + 3 * (place + n);
+        p[position{}] = p[clump_centre{}] + axes.to_space({offset[0], offset[1], offset[2]});
+        state.store(p, place + n, begun_anew{});
+      }
+      return true;
+    }
+    return false;
   }
 };
 
@@ -103,7 +133,8 @@ struct emit_at_places : emit_particles<S, State, Source> {
 /// born, nor one for which another would have to make room: it is dropped, and the next one has a place of its own.
 /// They are looked for when particles meet for the first time in the step, so no other is pushed; with
 /// `velocity_verlet` that is at its end. A scene has one source at most. `Source` is a copyable function object:
-/// COLLIDE_HD source(number, position&, velocity&) const says how particle number 0, 1, ... begins.
+/// COLLIDE_HD source(number, position&, velocity&) const says how particle number 0, 1, ... begins. Clumps wait for it
+/// in `set_clumps`.
 template <class Source = nozzle>
 struct emit_from {
   using writes = columns<position, velocity, alive>;

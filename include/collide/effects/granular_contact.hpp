@@ -49,6 +49,7 @@ struct granular_contact {
   static constexpr double farthest_saddle = detail::farthest_saddle_of<Cohesion>;  ///< from the centre, less the radius
 
   using reads = detail::union_of<columns<position>, typename Materials::reads>;
+  using optional_reads = columns<clump_mass>;
   using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;
   using remembers = typename detail::contact_columns_of<
       detail::union_of<columns<>, detail::remembers_of<Tangential>, detail::remembers_of<Rolling>,
@@ -126,10 +127,16 @@ struct granular_contact {
       if constexpr (turns) s.spin[c] = lanes::of([&](int k) { return seen(k)[angular_velocity{}][c]; });
     }
     s.radius = lanes::of([&](int k) { return seen(k).radius(); });
-    s.density = lanes::of([&](int k) { return made_of.template density_of<S>(seen(k)); });
+    s.density = lanes::of([&](int k) { return made_of.template density_of<S>(seen(k)) * of_clump<S>(seen(k)); });
     return s;
   }
-  /// The mass of a sphere.
+  /// The mass of a sphere's clump over its own.
+  template <class S, class Seen>
+  static COLLIDE_HD_INLINE S of_clump([[maybe_unused]] Seen const& p) {
+    if constexpr (Seen::template has<clump_mass>) return p[clump_mass{}];
+    return S(1);
+  }
+  /// The mass of a sphere, or of its clump.
   template <class P>
   static COLLIDE_HD_INLINE P mass_of(detail::meeting_sphere<P> const& s) {
     return detail::sphere_mass(1.0, s.radius) * s.density;
@@ -193,7 +200,7 @@ struct granular_contact {
   COLLIDE_HD_INLINE bool meet(Particle& p, Seen const& self, Seen const& other, Memory const& memory, S dt) const {
     auto const a = see<S>([&](int) { return self; }), b = see<S>([&](int) { return other; });
     granular_pair<S> const c = pair_of(a, b, self.number() < other.number() ? S(-1) : S(1));
-    return apply(p, c, mass_of(a), made_of.between(self, other), memory, dt);
+    return apply(p, c, made_of.between(self, other), memory, dt * of_clump<S>(self) / mass_of(a));
   }
 
   template <class P>
@@ -243,9 +250,9 @@ struct granular_contact {
       if constexpr (farthest_saddle > 0) {
         if (at_saddle) times = -hold_saddle(c, of);
       }
-      c.mass = m;
+      c.mass = m * of_clump<S>(self);
       c.is_wall = true;
-      c.rolling_inertia = S(1.4) * m * r * r;
+      c.rolling_inertia = S(1.4) * c.mass * r * r;
       vec3<S> turned(S(0), S(0), S(0));
       c.own_turning = c.turning = turned;
       if constexpr (turns) {
@@ -254,7 +261,7 @@ struct granular_contact {
         set_spins(c, self[angular_velocity{}], wall.surface_turning);
       }
       set_velocity(c, relative, turned);
-      bool const goes_on = apply(p, c, m, of, memory, times * dt);
+      bool const goes_on = apply(p, c, of, memory, times * dt / m);
       if (!at_saddle) return goes_on;
       if constexpr (!is_memoryless) memory.values() = before;
     }
@@ -293,16 +300,16 @@ struct granular_contact {
   }
 
   template <class Particle, class S, class Memory>
-  COLLIDE_HD_INLINE bool apply(Particle& p, granular_pair<S> const& c, S m, detail::contact_material const& of,
-                               Memory const& memory, S dt) const {
+  COLLIDE_HD_INLINE bool apply(Particle& p, granular_pair<S> const& c, detail::contact_material const& of,
+                               Memory const& memory, S impulse) const {
     normal_force<S> n = normal.force(c, of);
     cohesion.pull(n, c, of, memory);
     if (!(c.overlap > 0) && !n.goes_on) return false;
     auto const action = act_with(n, c, of, memory);
     if constexpr (turns) {
-      give(p[velocity{}], p[angular_velocity{}], action, c.own_radius, dt / m);
+      give(p[velocity{}], p[angular_velocity{}], action, c.own_radius, impulse);
     } else {
-      give(p[velocity{}], p[velocity{}], action, c.own_radius, dt / m);
+      give(p[velocity{}], p[velocity{}], action, c.own_radius, impulse);
     }
     return true;
   }

@@ -39,6 +39,7 @@ struct mass_flow {
   using optional_reads = columns<radius>;
   using writes = columns<side_of_surface>;
   static constexpr bool asks_forces = true;
+  static constexpr bool sees_clumps = true;        ///< a clump as one sphere
   static constexpr bool saves_parameters = false;  ///< they have a pointer
 
   Materials made_of{};                                    ///< densities

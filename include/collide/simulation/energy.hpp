@@ -82,6 +82,7 @@ struct particles_on_host {
   std::vector<S> x, v, w, r;
   std::vector<std::uint8_t> is_there, solid;
   std::vector<id> clump;                           ///< `in_clump`, in scenes with clumps
+  std::vector<S> clump_masses;                     ///< `clump_mass`
   std::vector<std::pair<id, std::size_t>> places;  ///< by numbers among the particles of all ranks
   typename simulation<Detector, Effect...>::effects_type::space_type space;
 
@@ -92,12 +93,16 @@ struct particles_on_host {
         r(of.size(), of.state().common_radius),
         is_there(of.size(), 1),
         solid(of.size(), 0),
+        clump_masses(of.size(), S(1)),
         space(typename simulation<Detector, Effect...>::effects_type(of.template effect<Effect>()...).space()) {
     if constexpr (contains<list, radius>) r = of.template to_host<radius>();
     if constexpr (contains<list, angular_velocity>) w = of.template to_host<angular_velocity>();
     if constexpr (contains<list, alive>) is_there = of.template to_host<alive>();
     if constexpr (contains<list, material>) solid = of.template to_host<material>();
-    if constexpr (contains<list, in_clump>) clump = of.template to_host<in_clump>();
+    if constexpr (contains<list, in_clump>) {
+      clump = of.template to_host<in_clump>();
+      clump_masses = of.template to_host<clump_mass>();
+    }
     if constexpr (contains<list, global_number>) {
       for (id const number : of.template to_host<global_number>()) places.emplace_back(number, places.size());
       std::sort(places.begin(), places.end());
@@ -311,7 +316,7 @@ void add_clumps(energy_sums& to, simulation<Detector, Effect...> const& of,
              l = of.template to_host<clump_momentum>(), inertia = of.template to_host<clump_inertia>();
   for (std::size_t i = 0; i < all.clump.size(); ++i) {
     if (all.clump[i] != i) continue;
-    double const m = sphere_mass(density(i), 1.0) * static_cast<double>(inertia[4 * i + 3]);
+    double const m = sphere_mass(density(i), static_cast<double>(inertia[4 * i + 3]));
     to.kinetic += 0.5 * m * all.at(v, i).squaredNorm();
     to.rotational += 0.5 * m * all.at(l, i).dot(all.at(all.w, i));
     to.potential -= m * field.dot(all.at(x, i));

@@ -10,7 +10,6 @@
 
 #include <collide/core/memory.hpp>
 #include <collide/effects/clumps.hpp>
-#include <collide/exact/detail/numeric/random.hpp>
 #include <collide/simulation/clump_shape.hpp>
 
 namespace collide {
@@ -22,22 +21,6 @@ struct placed_clump {
   twist moving;           ///< how that moves
   double scale = 1;       ///< by how much larger than its shape it is, above 0
 };
-
-/// A rotation at random, all equally likely, always the same for a number: w, x, y, z into `rotation`. G. Marsaglia,
-/// Annals of Mathematical Statistics 43, 1972.
-inline void turn_at_random(double (&rotation)[4], std::uint64_t number) {
-  double squares[2], found[4];
-  for (int half = 0; half < 2; ++half) {
-    for (std::uint64_t trial = 0;; ++trial) {  // a point in the unit disc
-      std::uint64_t const n = (number << 20) + (std::uint64_t(half) << 18) + 2 * trial;
-      for (int k = 0; k < 2; ++k) found[2 * half + k] = 2 * detail::random_fraction(n + std::uint64_t(k)) - 1;
-      squares[half] = found[2 * half] * found[2 * half] + found[2 * half + 1] * found[2 * half + 1];
-      if (squares[half] < 1 && squares[half] > 0) break;
-    }
-  }
-  double const part = std::sqrt((1 - squares[0]) / squares[1]);
-  for (int k = 0; k < 4; ++k) rotation[k] = k < 2 ? found[k] : found[k] * part;
-}
 
 /// A clump in each of some spheres, of which x, y, z and the radii are given as by `fill`: with its centre of mass in
 /// the middle, as large as it fits, and turned at random, always the same for a seed below 2^24. `number` is that of
@@ -65,8 +48,8 @@ namespace detail {
 /// The columns of clumps, on the host.
 template <class S>
 struct columns_of_clumps {
-  std::vector<S> centres, velocities, turnings, radii, offsets, clump_centres, clump_velocities, momenta, rotations,
-      inertias;
+  std::vector<S> centres, velocities, turnings, radii, masses, offsets, clump_centres, clump_velocities, momenta,
+      rotations, inertias;
   std::vector<id> first;
   double reach = 0;
 
@@ -84,6 +67,7 @@ struct columns_of_clumps {
     for (int k = 0; k < 3; ++k) momentum[k] *= larger * shape.inertia[k];
     momentum = rotated(q, momentum);
     bool const is_clump = shape.spheres.size() > 1;
+    double const radius = std::cbrt(shape.volume / sphere_mass(1.0, 1.0));  // of a sphere of the volume
     auto const number = static_cast<id>(first.size());
     for (std::size_t n = 0; n < shape.spheres.size(); ++n) {
       vec3<double> const offset = c.scale * shape.spheres[n].centre, from = rotated(q, offset);
@@ -92,6 +76,7 @@ struct columns_of_clumps {
       put(turnings, w);
       put(offsets, offset);
       radii.push_back(static_cast<S>(c.scale * shape.spheres[n].radius));
+      masses.push_back(static_cast<S>(is_clump ? std::pow(radius / shape.spheres[n].radius, 3) : 1));
       first.push_back(is_clump ? number : no_id);
       bool const is_first = is_clump && n == 0;
       put(clump_centres, is_first * centre);
@@ -99,7 +84,7 @@ struct columns_of_clumps {
       put(momenta, is_first * momentum);
       for (double const x : q) rotations.push_back(static_cast<S>(is_first * x));
       for (double const x : shape.inertia) inertias.push_back(static_cast<S>(is_first * larger * x));
-      inertias.push_back(static_cast<S>(is_first * larger * c.scale * shape.volume / sphere_mass(1.0, 1.0)));
+      inertias.push_back(static_cast<S>(is_first * c.scale * radius));
     }
     reach = std::max(reach, c.scale * shape.reach());
   }
@@ -134,16 +119,28 @@ void assign_from_host(Simulation& to, std::vector<T> const& values) {
 
 /// Puts clumps into a simulation that names `clumps`, in place of all particles: `set` with their spheres, those of one
 /// after those of the other. A shape of one sphere is a grain by itself, and all its bits are those of such a one.
-/// Radii that differ need `polydisperse`. Throws `error` if a shape is none, or a rotation is not of length 1, and what
-/// `set` throws. Allocates; waits. O(spheres).
+/// Radii that differ need `polydisperse`. The last `waiting` ones are not there yet: each is for one that `emit` makes,
+/// turned at random, with its shape and scale; all have as many spheres. Throws `error` if a shape is none, or a
+/// rotation is not of length 1, and what `set` throws. Allocates; waits. O(spheres).
 template <class Simulation>
-void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vector<placed_clump> const& placed) {
+void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vector<placed_clump> const& placed,
+                std::size_t waiting = 0) {
   using S = typename Simulation::scalar;
   for (auto const& shape : shapes) shape.check();
   detail::columns_of_clumps<S> all;
-  for (auto const& c : placed) {
-    detail::check_parameter(c.shape < shapes.size(), "set_clumps: the number of a shape is that of one of the list");
-    all.add(shapes[c.shape], c);
+  std::size_t there = 0, numbers = 0;  // spheres of those that do not wait, and of each one that does
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    detail::check_parameter(placed[i].shape < shapes.size(),
+                            "set_clumps: the number of a shape is that of one of the list");
+    clump_shape const& shape = shapes[placed[i].shape];
+    all.add(shape, placed[i]);
+    if (i + waiting < placed.size()) {
+      there = all.radii.size();
+    } else {
+      detail::check_parameter(numbers == 0 || numbers == shape.spheres.size(),
+                              "set_clumps: all clumps that wait have as many spheres");
+      numbers = shape.spheres.size();
+    }
   }
   auto const& radii = all.radii;
   std::size_t const n = radii.size();
@@ -155,6 +152,7 @@ void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vec
   to.space().copy_from_host(to.template data<angular_velocity>(), all.turnings.data(), all.turnings.size());
   to.space().synchronize();
   to.template effect<clumps>().reach = all.reach;
+  detail::assign_from_host<clump_mass>(to, all.masses);
   detail::assign_from_host<clump_offset>(to, all.offsets);
   detail::assign_from_host<clump_centre>(to, all.clump_centres);
   detail::assign_from_host<clump_velocity>(to, all.clump_velocities);
@@ -162,6 +160,11 @@ void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vec
   detail::assign_from_host<clump_rotation>(to, all.rotations);
   detail::assign_from_host<clump_inertia>(to, all.inertias);
   detail::assign_from_host<in_clump>(to, all.first);
+  if (there == n) return;
+  detail::check_parameter(Simulation::effects_type::makes,
+                          "set_clumps: clumps wait for emit, which is not in the scene");
+  if constexpr (Simulation::effects_type::makes) to.space().fill(to.template data<alive>() + there, 0, n - there);
+  to.internals().particles.placed = there;
 }
 
 }  // namespace collide

@@ -57,10 +57,14 @@ struct lone_grain {
   vec3<S> x, v, w;
   std::uint8_t of_solid;
   std::size_t its_number;
+  S of_clump = 1;  ///< `clump_mass`
 
+  template <class C>
+  static constexpr bool has = std::is_same<C, clump_mass>::value;
   COLLIDE_HD S radius() const { return its_radius; }
   COLLIDE_HD std::size_t number() const { return its_number; }
   COLLIDE_HD std::uint8_t operator[](material) const { return of_solid; }
+  COLLIDE_HD S operator[](clump_mass) const { return of_clump; }
   COLLIDE_HD vec3<S> const& operator[](position) const { return x; }
   COLLIDE_HD vec3<S> const& operator[](velocity) const { return v; }
   COLLIDE_HD vec3<S> const& operator[](angular_velocity) const { return w; }
@@ -68,15 +72,21 @@ struct lone_grain {
   COLLIDE_HD vec3<S>& operator[](angular_velocity) { return w; }
 };
 
-/// Contacts of a grain with the mesh: how many, and the sum of force times branch, over the grain's mass.
+/// Contacts of a grain with the mesh: how many, and the sums of force and of force times branch, over the grain's mass.
 struct mesh_load {
-  double contacts = 0, moment[3][3] = {};
+  double contacts = 0, moment[3][3] = {}, force[3] = {};
 
   COLLIDE_HD_INLINE mesh_load& operator+=(mesh_load const& other) {
-    contacts += other.contacts;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) moment[i][j] += other.moment[i][j];
+    add(other, 1, {0, 0, 0});
     return *this;
+  }
+  /// Adds a part of the load of a grain that is an arm away.
+  COLLIDE_HD_INLINE void add(mesh_load const& other, double part, vec3<double> const& arm) {
+    contacts += other.contacts;
+    for (int i = 0; i < 3; ++i) {
+      force[i] += part * other.force[i];
+      for (int j = 0; j < 3; ++j) moment[i][j] += part * (other.moment[i][j] - other.force[i] * arm[j]);
+    }
   }
 };
 
@@ -90,6 +100,7 @@ struct load_of_mesh {
     lone_grain<S> grain{self.the_radius, self[position{}], self[velocity{}], {S(0), S(0), S(0)}, 0, 0};
     if constexpr (contains<typename Seen::list, angular_velocity>) grain.w = self[angular_velocity{}];
     if constexpr (contains<typename Seen::list, material>) grain.of_solid = self[material{}];
+    if constexpr (contains<typename Seen::list, clump_mass>) grain.of_clump = self[clump_mass{}];
     lone_grain<S> pushed = grain;
     bool touches = wall.overlap > 0;
     if constexpr (Law::is_memoryless) {
@@ -101,9 +112,10 @@ struct load_of_mesh {
     mesh_load found;
     found.contacts = touches ? 1 : 0;
     double const arm = static_cast<double>(self.the_radius - wall.overlap);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        found.moment[i][j] = static_cast<double>(pushed.v[i] - grain.v[i]) * static_cast<double>(wall.normal[j]) * arm;
+    for (int i = 0; i < 3; ++i) {
+      found.force[i] = static_cast<double>(pushed.v[i] - grain.v[i]);
+      for (int j = 0; j < 3; ++j) found.moment[i][j] = found.force[i] * static_cast<double>(wall.normal[j]) * arm;
+    }
     return found;
   }
 };
@@ -116,7 +128,13 @@ void for_each_force(simulation<Detector, Effect...> const& of, particles_on_host
   static_assert(is_granular<law_type>, "collide: stress is that of granular_contact: name it in the scene");
   law_type const& law = of.template effect<law_type>();
   auto const grain_of = [&](std::size_t i) {
-    return lone_grain<double>{all.radius_of(i), all.at(all.x, i), all.at(all.v, i), all.at(all.w, i), all.solid[i], i};
+    return lone_grain<double>{all.radius_of(i),
+                              all.at(all.x, i),
+                              all.at(all.v, i),
+                              all.at(all.w, i),
+                              all.solid[i],
+                              i,
+                              static_cast<double>(all.clump_masses[i])};
   };
   for_each_contact_of<law_type>(of, all, [&](std::size_t i, std::size_t k, [[maybe_unused]] auto const& memory) {
     lone_grain<double> const own = grain_of(i);
@@ -164,25 +182,55 @@ struct field_sums {
   }
 };
 
+/// The grain of each sphere: itself, or a clump.
+template <class Detector, class... Effect>
+struct grains_of_spheres {
+  using particles = particles_on_host<Detector, Effect...>;
+  particles const& all;
+  std::vector<std::size_t> first;           ///< sphere of the grain
+  std::vector<vec3<double>> arms;           ///< from the grain's centre
+  std::vector<typename particles::S> x, v;  ///< of the grain, at its first sphere
+
+  grains_of_spheres(simulation<Detector, Effect...> const& of, particles const& on_host)
+      : all{on_host}, first(of.size()), arms(of.size(), vec3<double>(0, 0, 0)), x{all.x}, v{all.v} {
+    for (std::size_t i = 0; i < of.size(); ++i) first[i] = all.is_of_clump(i) ? all.clump[i] : i;
+    if constexpr (contains<typename simulation<Detector, Effect...>::columns, in_clump>) {
+      auto const q = of.template to_host<clump_rotation>(), offset = of.template to_host<clump_offset>(),
+                 at = of.template to_host<clump_centre>(), moves = of.template to_host<clump_velocity>();
+      for (std::size_t i = 0; i < of.size(); ++i) {
+        if (!all.is_of_clump(i)) continue;
+        several<double, 4> turn;
+        for (std::size_t k = 0; k < 4; ++k) turn.of[k] = static_cast<double>(q[4 * first[i] + k]);
+        arms[i] = turned_axes<double>(turn).to_space(all.at(offset, i));
+        for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) x[k] = at[k], v[k] = moves[k];
+      }
+    }
+  }
+  vec3<double> centre(std::size_t i) const { return all.at(x, first[i]); }
+  vec3<double> velocity(std::size_t i) const { return all.at(v, first[i]); }
+};
+
 /// Gives all grains and all lines between those that touch to a sink: grain(x, volume, mass, contacts, v) and
 /// line(from, branch, force), of grains with the mesh line(centre, 0, ...) by its moments.
 template <class Detector, class... Effect, class Sink>
 void for_each_load(simulation<Detector, Effect...> const& of, Sink& sink) {
   using law_type = typename granular_of<Effect...>::type;
-  static_assert(!contains<typename simulation<Detector, Effect...>::columns, in_clump>,
-                "collide: stress does not know clumps yet");
   law_type const& law = of.template effect<law_type>();
   particles_on_host<Detector, Effect...> const all(of);
-  auto loads = sums_over_mesh_contacts<mesh_load>(of, load_of_mesh<law_type>{law});
+  grains_of_spheres<Detector, Effect...> const grains(of, all);
+  auto const on_spheres = sums_over_mesh_contacts<mesh_load>(of, load_of_mesh<law_type>{law});
+  std::vector<mesh_load> loads(of.size());
+  for (std::size_t i = 0; i < of.size(); ++i)
+    loads[grains.first[i]].add(on_spheres[i], 1 / static_cast<double>(all.clump_masses[i]), grains.arms[i]);
   for_each_force(of, all, [&](std::size_t i, std::size_t k, vec3<double> const& branch, vec3<double> const& force) {
-    ++loads[i].contacts, ++loads[k].contacts;
-    sink.line(all.at(all.x, i), branch, force);
+    ++loads[grains.first[i]].contacts, ++loads[grains.first[k]].contacts;
+    sink.line(grains.centre(i), branch - grains.arms[i] + grains.arms[k], force);
   });
   for (std::size_t i = 0; i < of.size(); ++i) {
-    if (all.is_there[i] == 0) continue;
-    double const volume = sphere_mass(1.0, all.radius_of(i));
+    if (all.is_there[i] == 0 || grains.first[i] != i) continue;
+    double const volume = sphere_mass(1.0, all.radius_of(i)) * static_cast<double>(all.clump_masses[i]);
     double const mass = volume * law.made_of.template density_of<double>(all.solid_of(i));
-    sink.grain(all.at(all.x, i), volume, mass, loads[i], all.at(all.v, i));
+    sink.grain(grains.centre(i), volume, mass, loads[i], grains.velocity(i));
   }
 }
 
@@ -277,10 +325,11 @@ std::vector<double> normal_forces(simulation<Detector, Effect...> const& of) {
   return found;
 }
 
-/// The means of fields in a box, of a scene with `granular_contact`: grains count where their centres are, forces by
-/// the part of the line between centres that is in the box, those of the mesh where the grain's centre is. Forces are
-/// those where grains are, with velocities as they are. In a periodic box a line counts where its first grain is. Of
-/// `local()` of ranks it is that of the rank's own grains. Waits, and copies columns to the host. O(n log n).
+/// The means of fields in a box, of a scene with `granular_contact`: grains count where their centres are, those of
+/// clumps their centres of mass, forces by the part of the line between centres that is in the box, those of the mesh
+/// where the grain's centre is. Forces are those where grains are, with velocities as they are. In a periodic box a
+/// line counts where its first grain is. Of `local()` of ranks it is that of the rank's own grains. Waits, and copies
+/// columns to the host. O(n log n).
 template <class Detector, class... Effect>
 grain_fields stress(simulation<Detector, Effect...> const& of, double const (&lower)[3], double const (&upper)[3]) {
   for (int k = 0; k < 3; ++k) detail::check_parameter(lower[k] < upper[k], "stress: each side of the box is above 0");

@@ -13,6 +13,7 @@ the same for all arguments. `Mesh` has the queries, `Simulation` particles that 
 """
 
 from . import _host
+from ._clumps import ClumpShape, random_rotations
 from ._errors import Error
 from ._fill import Filling, fill
 from ._mesh import Contacts, Csr, Impacts, Mesh, Nearest, Pairs, Seams, SignedDistance, Surface, Winding
@@ -25,8 +26,8 @@ from .granular import granular_contact
 __version__: str = ".".join(map(str, _host.version))
 
 __all__ = [
-    "Births", "Body", "ContactReport", "Contacts", "Csr", "Effect", "Error", "Filling", "Flow", "Impacts", "Impulses", "Law",
+    "Births", "Body", "ClumpShape", "ContactReport", "Contacts", "Csr", "Effect", "Error", "Filling", "Flow", "Impacts", "Impulses", "Law",
     "Loads", "Mesh", "Nearest", "Pairs", "Seams", "SignedDistance", "Simulation", "Surface", "Winding", "effects", "granular",
-    "fill", "granular_contact",
+    "fill", "granular_contact", "random_rotations",
 ]
 __all__ += effects.__all__

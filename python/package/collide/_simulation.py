@@ -11,6 +11,7 @@ import numpy
 from . import _build
 from ._arrays import CUDA, library_of, module_for, of_list, stream_of
 from ._mesh import PRECISIONS, Array, Mesh, how_many_threads
+from ._clumps import ClumpShape, table
 from ._errors import choice, real, refuse, shown, whole
 from .effects import Effect, Vector, _numbers
 
@@ -216,6 +217,34 @@ class Simulation:
         velocities = of_list(velocities, "velocities", dtype)
         self._library = library_of(centres, self._device)
         self._replace("set", centres, radius, velocities, whole("capacity", capacity, 0, 2**32 - 2))
+        self._is_set = True
+
+    def set_clumps(
+        self, shapes: Union[ClumpShape, Iterable[ClumpShape]], centres: Any, rotations: Any = (1, 0, 0, 0),
+        velocities: Any = (0, 0, 0), angular_velocities: Any = (0, 0, 0), *, shape: Any = 0, scale: Any = 1, waiting: int = 0,
+    ) -> None:
+        """Puts n clumps in place of all particles, with `clumps` in the list: those of before are gone, and the time is 0.
+        The columns have a row for each sphere, those of a clump one after the other; ``clump_rotation`` and others of a
+        clump are in its first row. Radii that differ need `polydisperse`.
+
+        shapes              a `ClumpShape`, or several; one of a single sphere is a grain by itself
+        centres             (n, 3): the centres of mass; numbers, as all arguments, on the host
+        rotations           (n, 4) or one: unit quaternions w, x, y, z of the frames in which spheres were given
+        velocities          (n, 3) or one: of the centres of mass
+        angular_velocities  (n, 3) or one: radians per time
+        shape               (n,) or one: which of ``shapes``
+        scale               (n,) or one: by how much larger than their shapes they are, above 0
+        waiting             so many of the last are not there: `emit` makes them; each has as many spheres
+        """
+        shapes = _listed("shapes", shapes, ClumpShape, "collide.ClumpShape(centres, radii)")
+        x = table("centres", centres, None, 3)
+        parts = [table(name, values, len(x), width) for name, values, width in (
+            ("shape", shape, 1), ("centres", x, 3), ("rotations", rotations, 4), ("velocities", velocities, 3),
+            ("angular_velocities", angular_velocities, 3), ("scale", scale, 1))]
+        wrong = not numpy.isin(parts[0], numpy.arange(len(shapes))).all()
+        refuse(wrong, "shape", f"expected whole numbers from 0 to {len(shapes) - 1}")
+        self._replace("set_clumps", [n for s in shapes for n in s._numbers], numpy.hstack(parts).ravel().tolist(),
+                      whole("waiting", waiting, 0, len(x)))
         self._is_set = True
 
     def step(self, dt: float) -> None:

@@ -1,5 +1,7 @@
 """Gradients for PyTorch: distances and nearest points that know what they depend on.
 
+    import collide.autograd
+
     distance = collide.autograd.signed_distance(points, vertices, triangles)
     distance.square().sum().backward()                  # points.grad, vertices.grad
 

@@ -194,6 +194,11 @@ def periodic_box(lower: Vector, upper: Vector) -> Effect:
 
 
 @_describes(Effect)
+def clumps() -> Effect:
+    """Spheres move in rigid groups, placed by `Simulation.set_clumps`; with `velocity_verlet` and contact by forces."""
+
+
+@_describes(Effect)
 def polydisperse() -> Effect:
     """Each particle has its own radius: the column radius."""
 
@@ -261,7 +266,7 @@ def velocity_verlet() -> Effect:
 
 __all__ = [  # all functions above, as words for type checkers
     "gravity", "drag", "external_forces", "wind", "bounce", "friction", "spin", "adhesion", "sphere_contact",
-    "sleep", "emit", "absorb", "absorbing_box", "box_walls", "periodic_box", "polydisperse", "lost", "lost_motion",
+    "sleep", "emit", "absorb", "absorbing_box", "box_walls", "periodic_box", "clumps", "polydisperse", "lost", "lost_motion",
     "mesh_forces", "pair_forces", "mass_flow", "reaction", "wear", "contact_work", "moving_bodies", "driven_bodies",
     "velocity_verlet",
 ]

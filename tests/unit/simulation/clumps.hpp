@@ -5,16 +5,23 @@
 #include <cmath>
 #include <sstream>
 
+#include <collide/effects/absorb.hpp>
 #include <collide/effects/bodies.hpp>
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/clumps.hpp>
 #include <collide/effects/contact_forces.hpp>
+#include <collide/effects/contact_work.hpp>
+#include <collide/effects/drag.hpp>
+#include <collide/effects/emit.hpp>
+#include <collide/effects/external_forces.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/integrators.hpp>
+#include <collide/effects/mass_flow.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/simulation/checkpoint.hpp>
 #include <collide/simulation/energy.hpp>
 #include <collide/simulation/place_clumps.hpp>
+#include <collide/simulation/stress.hpp>
 
 #include "simulation/simulation.hpp"
 
@@ -60,6 +67,13 @@ class clumps_in {
  private:
   placed<S> corners_;
 };
+
+template <class Simulation>
+auto state_of_clumps(Simulation const& of) {
+  return std::tuple(of.template to_host<position>(), of.template to_host<velocity>(),
+                    of.template to_host<collide::angular_velocity>(), of.template to_host<collide::clump_centre>(),
+                    of.template to_host<collide::clump_momentum>(), of.template to_host<collide::clump_rotation>());
+}
 
 inline clump_shape dumbbell(double apart, double radius) {
   return collide::shape_of_clump({ball{{0, 0, 0}, radius}, ball{{apart, 0, 0}, radius}});
@@ -294,6 +308,203 @@ void check_rod_on_slope(Space const& space) {
   }
 }
 
+/// Dashpots know the mass of a clump: one of eight times its ball's mass leaves a floor, and another one of half of
+/// that, with the restitution of the material.
+template <class Space>
+void check_restitution_of_clumps(Space const& space) {
+  using law = granular_contact<linear>;
+  world<double> w;
+  add_floor(w, 3, 1);
+  clump_shape heavy = collide::shape_of_clump({ball{{0, 0, 0}, 0.1}});
+  heavy.spheres.push_back({{0, 0, 0}, 0.02});
+  clump_shape half = heavy;
+  heavy.volume *= 8, half.volume *= 4;
+  auto by = law_of<law>(1e7, 0.4, 0);
+  by.normal.stiffness = 1e6;
+  clumps_in<Space, double, law, collide::polydisperse> some(space, w, by, {});
+  std::vector<placed_clump> all{clump_at(0, 0, 0.11), clump_at(-1, 0, 1), clump_at(-0.79, 0, 1)};
+  all[2].shape = 1;
+  all[0].moving.linear[2] = -1, all[1].moving.linear[0] = 2;
+  collide::set_clumps(some.made, {heavy, half}, all);
+  some.made.steps(20000, 4e-6);
+  CHECK(some.speed(0).z() == doctest::Approx(0.4).epsilon(1e-3));
+  double const first = some.speed(2).x(), second = some.speed(4).x();
+  CHECK(first + second / 2 == doctest::Approx(2).epsilon(1e-12));
+  CHECK(second - first == doctest::Approx(0.8).epsilon(1e-3));
+}
+
+/// Forces on the spheres of a clump add up, and turn it.
+template <class S, class Space>
+void check_forces_on_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  S const dt = S(1e-3);
+  clumps_in<Space, S, law, collide::external_forces<>> some(space, {}, law_of<law>(1e5, 0.5, 0.3), {{1000}});
+  clump_shape const shape = dumbbell(0.5, 0.1);
+  collide::set_clumps(some.made, {shape}, {clump_at(0, 0, 0), clump_at(0, 3, 0)});
+  double const mass = 1000 * shape.volume;
+  std::vector<S> forces(12, S(0));
+  forces[2] = S(3 * mass), forces[7] = S(mass), forces[8] = S(-mass), forces[10] = S(mass), forces[11] = S(mass);
+  placed<S> const there(space, forces);
+  some.made.template assign<collide::external_force>(there.data());
+  for (int k = 0; k < 10; ++k) some.made.step(dt);
+  double const close = sizeof(S) == 4 ? 1e-4 : 1e-6, time = 0.01;
+  CHECK(some.speed(0).z() == doctest::Approx(3 * time).epsilon(sizeof(S) == 4 ? 1e-5 : 1e-12));
+  CHECK(some.speed(2).y() == doctest::Approx(2 * time).epsilon(sizeof(S) == 4 ? 1e-5 : 1e-12));
+  CHECK(std::abs(some.speed(2).z()) < 1e-8);
+  double const arm = (some.template read<position>(0) - some.centre(0)).x(), turn = arm * 3 * time;
+  CHECK(some.template read<collide::clump_momentum>(0).y() == doctest::Approx(-turn).epsilon(close));
+  CHECK(some.turning(0).y() == doctest::Approx(-turn / shape.inertia[1]).epsilon(close));
+  vector const across = some.template read<position>(2) - some.centre(2);
+  CHECK(some.template read<collide::clump_momentum>(2).y() == doctest::Approx(2 * across.x() * time).epsilon(close));
+}
+
+/// Clumps fall through a surface, each once and with its mass, and vanish as a whole.
+template <class Space>
+void check_flow_of_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  collide::flow_sums sums(space, 1e-9);
+  auto const through = sums.through({0, 0, 0}, {0, 0, -1}, collide::one_density{1000});
+  clumps_in<Space, double, gravity, law, collide::polydisperse, collide::mass_flow<>, collide::absorbing_box> some(
+      space, {}, gravity{}, law_of<law>(1e5, 0.5, 0.3), {}, through, {{-9, -9, -9}, {9, 9, -1}});
+  std::vector<placed_clump> all;
+  for (int i = 0; i < 6; ++i) {
+    all.push_back(clump_at(3 * (i % 3), 0, 0.8 + 3 * (i / 3)));
+    all.back().moving.angular[0] = i;
+  }
+  collide::set_clumps(some.made, {potato()}, all);
+  some.made.steps(3300, 2e-4);  // 2.1 m: the lower three
+  auto const flow = sums.read(space);
+  CHECK(flow.particles == 3);
+  CHECK(flow.mass == doctest::Approx(3 * 1000 * potato().volume).epsilon(1e-9));
+  auto const there = some.made.template to_host<collide::alive>();
+  for (std::size_t i = 0; i < there.size(); ++i) CHECK(int(there[i]) == int(i >= 9));
+  vector const gone = some.centre(0);
+  some.made.steps(100, 2e-4);
+  CHECK(some.centre(0) == gone);
+  CHECK(some.centre(9) != gone);
+}
+
+/// A source makes clumps that wait for it, turned at random; those of one sphere have the bits of spheres. What a sink
+/// takes leaves its place to the next.
+template <class S>
+struct fountain {
+  using law = granular_contact<hertz, mindlin>;
+  template <class Space>
+  using scene = clumps_in<Space, S, gravity, law, collide::emit, collide::absorbing_box, collide::polydisperse>;
+
+  template <class Space>
+  static scene<Space> make(Space const& space) {
+    world<S> w;
+    add_floor(w, 1, 2);
+    collide::emit source;
+    source.rate = 40, source.radius = 0.3;
+    source.source.position[2] = 3, source.source.half_width = 0.5, source.source.velocity[2] = -2;
+    return scene<Space>(space, w, gravity{}, law_of<law>(2e5, 0.4, 0.5), source, {{-9, -9, -9}, {9, 9, -1}}, {});
+  }
+};
+template <class S, class Space>
+void check_source_of_clumps(Space const& space) {
+  auto reference = fountain<S>::make(collide::host(1));
+  auto found = fountain<S>::make(space), loaded = fountain<S>::make(space);
+  placed_clump c = clump_at(0, 0, 0.4);
+  c.scale = 0.5;
+  std::vector<placed_clump> const all(21, c);  // one is there
+  collide::set_clumps(reference.made, {potato()}, all, 20);
+  collide::set_clumps(found.made, {potato()}, all, 20);
+  CHECK(found.made.size() == 63);
+  S const dt = S(5e-4);
+  auto const born = [](auto const& of) {
+    auto const there = of.made.template to_host<collide::alive>();
+    for (std::size_t i = 0; i < there.size(); ++i) CHECK(int(there[i]) == int(there[i / 3 * 3]));
+    return std::count(there.begin(), there.end(), 1);
+  };
+  CHECK(born(found) == 3);
+  found.made.steps(200, dt);
+  CHECK(born(found) == 3 * 5);
+  auto const q = found.made.template to_host<collide::clump_rotation>();
+  for (std::size_t i = 12; i < 48; i += 12) CHECK(q[i] != q[12 + (i == 12 ? 12 : 0)]);
+  reference.made.steps(3000, dt);
+  std::stringstream file;
+  collide::save(found.made, file);
+  collide::load(loaded.made, file);
+  found.made.steps(2800, dt);
+  loaded.made.steps(2800, dt);
+  CHECK(found.made.births().due == 60);
+  CHECK(born(found) > 3 * 5);
+  CHECK(state_of_clumps(found.made) == state_of_clumps(reference.made));
+  CHECK(state_of_clumps(loaded.made) == state_of_clumps(reference.made));
+  double const apart = (found.template read<position>(0) - found.template read<position>(2)).norm();
+  for (std::size_t i = 0; i < 63; i += 3)
+    CHECK((found.template read<position>(i) - found.template read<position>(i + 2)).norm() ==
+          doctest::Approx(apart).epsilon(1e-5));
+}
+/// A few clumps, in a scene with all effects that know them, have the bits of the host.
+template <class S, class Space>
+auto end_of_few_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  world<S> w;
+  add_floor(w, 1, 1);
+  collide::emit source;
+  source.rate = 100, source.radius = 0.3;
+  source.source.position[2] = 1.2, source.source.half_width = 0.5, source.source.velocity[2] = -2;
+  collide::flow_sums sums(space, 1e-6);
+  auto const through = sums.through({0, 0, 0.7}, {0, 0, -1}, collide::one_density{1000});
+  clumps_in<Space, S, gravity, law, collide::contact_work<>, collide::emit, collide::external_forces<>,
+            collide::absorbing_box, collide::mass_flow<>, collide::polydisperse, collide::periodic_box>
+      some(space, w, gravity{}, law_of<law>(2e5, 0.4, 0.5), {{1000}}, source, {{1000}}, {{-9, -9, -9}, {9, 9, 0.2}},
+           through, {}, {{-2, -2, -2}, {2, 2, 2}});
+  placed_clump c = clump_at(0, 0, 0.3);
+  c.scale = 0.5;
+  collide::set_clumps(some.made, {potato()}, std::vector<placed_clump>(11, c), 10);
+  std::vector<S> forces(3 * some.made.size(), S(20));
+  placed<S> const there(space, forces);
+  some.made.template assign<collide::external_force>(there.data());
+  for (int k = 0; k < 100; ++k) some.made.step(S(1e-3));
+  auto const flow = sums.read(space);
+  return std::tuple(state_of_clumps(some.made), some.made.template to_host<collide::alive>(),
+                    some.made.template to_host<collide::normal_work>(),
+                    some.made.template to_host<collide::clump_push>(), flow.particles, flow.mass);
+}
+template <class S, class Space>
+void check_few_clumps(Space const& space) {
+  auto const here = end_of_few_clumps<S>(collide::host(1)), there = end_of_few_clumps<S>(space);
+  CHECK(here == there);
+  CHECK(std::count(std::get<1>(here).begin(), std::get<1>(here).end(), 1) > 3);
+  auto const& work = std::get<2>(here);
+  CHECK(std::count_if(work.begin(), work.end(), [](double x) { return x != 0; }) > 3);
+}
+
+template <class Space>
+void check_source_of_single_spheres(Space const& space) {
+  using S = double;
+  auto found = fountain<S>::make(space);
+  collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, velocity_verlet, gravity, fountain<S>::law,
+                      collide::emit, collide::absorbing_box, collide::polydisperse>
+      spheres(space, velocity_verlet{}, gravity{}, found.made.template effect<fountain<S>::law>(),
+              found.made.template effect<collide::emit>(), found.made.template effect<collide::absorbing_box>(),
+              collide::polydisperse{});
+  world<S> w;
+  add_floor(w, 1, 2);
+  w.radius = 0.3;
+  w.particle(0, 0, 0.4);
+  placed<S> const corners(space, w.corners), centres(space, w.centres);
+  spheres.set_mesh(collide::triangle_soup(corners.data(), corners.size() / 9));
+  spheres.set(collide::spheres_xyz(centres.data(), 1, w.radius), nullptr, 21);
+  collide::set_clumps(found.made, {collide::shape_of_clump({ball{{0, 0, 0}, 0.3}})},
+                      std::vector<placed_clump>(21, clump_at(0, 0, 0.4)), 20);
+  spheres.steps(2000, 5e-4);
+  found.made.steps(2000, 5e-4);
+  CHECK(spheres.births().due == 40);
+  CHECK(found.made.template to_host<collide::alive>() == spheres.template to_host<collide::alive>());
+  CHECK(found.made.template to_host<position>() == spheres.template to_host<position>());
+  CHECK(found.made.template to_host<velocity>() == spheres.template to_host<velocity>());
+  found.made.template effect<collide::emit>().only_where_free = true;
+  CHECK_THROWS_WITH_AS(found.made.step(5e-4), doctest::Contains("only_where_free"), collide::error);
+  clumps_in<Space, S, fountain<S>::law> none(space, {}, law_of<fountain<S>::law>(1e5, 0.5, 0.3));
+  CHECK_THROWS_WITH_AS(collide::set_clumps(none.made, {dumbbell(1, 0.2)}, {clump_at(0, 0, 0)}, 1),
+                       doctest::Contains("emit"), collide::error);
+}
+
 /// Momentum and angular momentum of clumps that meet each other close.
 template <class Law, class Space>
 void check_momentum_of_clumps(Space const& space) {
@@ -334,13 +545,6 @@ void check_momentum_of_clumps(Space const& space) {
 }
 
 // ---- beside other features
-
-template <class Simulation>
-auto state_of_clumps(Simulation const& of) {
-  return std::tuple(of.template to_host<position>(), of.template to_host<velocity>(),
-                    of.template to_host<collide::angular_velocity>(), of.template to_host<collide::clump_centre>(),
-                    of.template to_host<collide::clump_momentum>(), of.template to_host<collide::clump_rotation>());
-}
 
 /// A clump of spheres that overlap presses on a body with the weight of its union, and goes with a belt.
 template <class S, class Space>
@@ -415,18 +619,20 @@ void check_clumps_in_boxes(Space const& space) {
   CHECK_THROWS_WITH_AS(small.made.step(1e-4), doctest::Contains("periodic_box"), collide::error);
 }
 
-/// A heap of clumps and balls on a floor, in any space, with a checkpoint in the middle: the same bits.
-template <class S, class Space>
+/// A heap of clumps and balls on a floor, in any space, with a checkpoint in the middle: the same bits. Beside other
+/// effects of which all parameters are as by default.
+template <class S, class Space, class... Effect>
 struct heap_of_clumps {
   using law = granular_contact<hertz, mindlin>;
-  using scene = clumps_in<Space, S, gravity, law, collide::polydisperse, collide::moving_bodies<>>;
+  using scene = clumps_in<Space, S, gravity, law, Effect..., collide::polydisperse, collide::moving_bodies<>>;
 
   static world<S> tray() {
     world<S> w;
     add_floor(w, 2, 4);
     return w;
   }
-  static void place(scene& to) {
+  template <class Scene>
+  static void place(Scene& to) {
     std::vector<clump_shape> const shapes{dumbbell(0.3, 0.2), potato(),
                                           collide::shape_of_clump({ball{{0, 0, 0}, 0.25}})};
     std::vector<placed_clump> all;
@@ -439,7 +645,9 @@ struct heap_of_clumps {
     }
     collide::set_clumps(to.made, shapes, all);
   }
-  static scene make(Space const& space) { return scene(space, tray(), gravity{}, law_of<law>(2e5, 0.4, 0.5), {}, {}); }
+  static scene make(Space const& space) {
+    return scene(space, tray(), gravity{}, law_of<law>(2e5, 0.4, 0.5), Effect{}..., {}, {});
+  }
 };
 /// Elastic, smooth clumps on a floor keep their energy, in which each point of a clump counts once.
 template <class Space>
@@ -475,10 +683,72 @@ void check_energy_of_clumps(Space const& space) {
   CHECK(before.potential < 9.81 * mass * 3.0);
 }
 
-template <class S, class Space>
+/// Of clumps that slide, roll and are damped, on a belt, all energy is accounted for.
+template <class Space>
+void check_balance_of_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  world<double> w;
+  add_floor(w, 4, 4);
+  clumps_in<Space, double, gravity, law, collide::polydisperse, collide::moving_bodies<>, collide::contact_work<>> some(
+      space, w, gravity{}, law_of<law>(1e6, 0.4, 0.5, 0.1), {}, {}, {{1000}});
+  placed<double> const corners(space, w.corners);
+  collide::body belt{0, w.corners.size() / 9, {}};
+  belt.motion.belt[1] = 0.5;
+  some.made.set_mesh(collide::triangle_soup(corners.data(), corners.size() / 9), {belt});
+  std::vector<placed_clump> all;
+  for (int i = 0; i < 12; ++i) {
+    all.push_back(clump_at(1.2 * (i % 2), 1.2 * (i / 2 % 2), 0.9 + 1.2 * (i / 4)));
+    all.back().shape = std::size_t(i) % 3;
+    all.back().scale = 0.8;
+    all.back().moving.angular[i % 3] = 3;
+    collide::turn_at_random(all.back().at.rotation, std::uint64_t(i));
+  }
+  collide::set_clumps(some.made, {potato(), dumbbell(0.3, 0.25), collide::shape_of_clump({ball{{0, 0, 0}, 0.4}})}, all);
+  auto const before = collide::energy(some.made);
+  some.made.steps(12000, 1e-4);
+  auto const after = collide::energy(some.made);
+  CHECK(after.lost() > 0.5 * before.total());
+  CHECK(after.sliding > 0.01 * before.total());
+  CHECK(after.damping > 0.1 * before.total());
+  CHECK(after.given > 1e-3 * before.total());
+  CHECK(std::abs(after.balance() - before.balance()) < 1e-7 * before.total());
+}
+
+/// A heap of clumps at rest: its stress times the volume is what its weight asks for, and it does not turn.
+template <class Space>
+void check_stress_of_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  world<double> w;
+  add_floor(w, 9, 2);
+  clumps_in<Space, double, gravity, law, collide::polydisperse, collide::drag> at_rest(
+      space, w, gravity{}, law_of<law>(1e6, 0.1, 0.8), {}, {3});
+  heap_of_clumps<double, Space>::place(at_rest);
+  at_rest.made.steps(40000, 4e-4);
+  collide::energy_sums const e = collide::energy(at_rest.made);
+  CHECK(e.kinetic < 1e-6 * e.potential);
+  double const side = 20, volume = side * side * side;
+  auto const found = collide::stress(at_rest.made, {-side / 2, -side / 2, -side / 2}, {side / 2, side / 2, side / 2});
+  CHECK(found.contact_stress[2][2] * volume == doctest::Approx(e.potential).epsilon(1e-3));
+  CHECK(found.density * volume * 9.81 < e.potential / 0.2);
+  for (int k = 0; k < 3; ++k) {
+    int const j = (k + 1) % 3;
+    CHECK(std::abs(found.contact_stress[k][j] - found.contact_stress[j][k]) < 1e-3 * found.contact_stress[2][2]);
+    CHECK(std::abs(found.kinetic_stress[k][k]) < 1e-5 * found.contact_stress[2][2]);
+  }
+  double mass = 0;
+  auto const heavier = at_rest.made.template to_host<collide::clump_mass>();
+  auto const first = at_rest.made.template to_host<collide::in_clump>();
+  auto const radii = at_rest.made.template to_host<collide::radius>();
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    if (first[i] == i || first[i] == collide::no_id)
+      mass += heavier[i] * collide::detail::sphere_mass(1000.0, radii[i]);
+  CHECK(found.density * volume == doctest::Approx(mass).epsilon(1e-12));
+}
+
+template <class S, class... Effect, class Space>
 void check_same_clumps(Space const& space) {
-  using on_host = heap_of_clumps<S, collide::host>;
-  using there = heap_of_clumps<S, Space>;
+  using on_host = heap_of_clumps<S, collide::host, Effect...>;
+  using there = heap_of_clumps<S, Space, Effect...>;
   auto reference = on_host::make(collide::host(1));
   auto found = there::make(space), loaded = there::make(space);
   on_host::place(reference);

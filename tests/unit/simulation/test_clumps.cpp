@@ -22,6 +22,7 @@ TEST_CASE("clumps: one sphere is a sphere") {
 TEST_CASE("clumps: impact of a dumbbell, a rod on a slope, and momentum that closes") {
   tests::check_dumbbell_impact(host(1));
   tests::check_rod_on_slope(host(1));
+  tests::check_restitution_of_clumps(host(1));
   tests::check_momentum_of_clumps<collide::granular_contact<collide::hertz, collide::mindlin>>(host(1));
   tests::check_momentum_of_clumps<collide::granular_contact<collide::linear, collide::dashpot>>(blocks());
 }
@@ -29,7 +30,7 @@ TEST_CASE("clumps: impact of a dumbbell, a rod on a slope, and momentum that clo
 TEST_CASE("clumps: the same bits in every space, and after a checkpoint") {
   tests::check_same_clumps<double>(host(2));
   tests::check_same_clumps<float>(host(1));
-  tests::check_same_clumps<double>(blocks());
+  tests::check_same_clumps<double, collide::external_forces<>, collide::absorbing_box>(blocks());
   tests::check_same_clumps<float>(blocks());
 }
 

@@ -16,3 +16,7 @@ TEST_CASE("clumps: the same bits as on the host, and after a checkpoint, on a GP
   tests::check_same_clumps<double>(cuda_shared());
   tests::check_same_clumps<float>(cuda_shared());
 }
+
+TEST_CASE("few: clumps beside all effects that know them, on the GPU") {
+  tests::check_few_clumps<float>(cuda_shared());
+}

@@ -114,6 +114,25 @@ TEST_CASE("where features meet: what sleeps on one whose place a source takes fa
   tests::check_place_far_away<velocity_verlet, float>(blocks());
 }
 
+TEST_CASE("where features meet: forces on spheres of clumps turn these, which flow and vanish as a whole") {
+  tests::check_forces_on_clumps<double>(host(1));
+  tests::check_forces_on_clumps<float>(blocks());
+  tests::check_flow_of_clumps(host(1));
+  tests::check_flow_of_clumps(blocks());
+}
+
+TEST_CASE("where features meet: a source makes clumps, and where a sink takes them others come") {
+  tests::check_source_of_clumps<double>(host(1));
+  tests::check_source_of_clumps<float>(blocks());
+  tests::check_source_of_single_spheres(host(1));
+  tests::check_few_clumps<double>(blocks());
+}
+
+TEST_CASE("where features meet: the energy of clumps is accounted for, and their stress holds their weight") {
+  tests::check_balance_of_clumps(host(1));
+  tests::check_stress_of_clumps(host(1));
+}
+
 TEST_CASE("where features meet: clumps press with their weight, go with a belt, and meet across the sides of a box") {
   tests::check_weight_of_clumps<double>(host(1));
   tests::check_weight_of_clumps<float>(blocks());

@@ -59,6 +59,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       (has_on_mesh_contact<E, S>::value || ...) || (has_after_mesh_contact<E, S>::value || ...) ||
       (any_mesh_impulse && !overlaps);
   static constexpr bool any_resistance = (has_resistance<E, S>::value || ...);
+  static constexpr bool any_push = (pushes_spheres<E, S> || ...);
   static constexpr bool flows = (flows_in<E, S> || ...);
 
   using base = columns<position, velocity>;
@@ -86,6 +87,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using columns_if = std::conditional_t<Needed, columns<C...>, columns<>>;
   using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
                               columns_if<keeps_pair_torques, pair_angular_acceleration>>;
+  using clump_kicks =
+      columns_if<has_clumps && ((follows_pair_contacts<E> && asks_forces<E>) || ...), clump_push, clump_turn>;
   using held_columns = columns_if<any_mesh_contact && has_half_kicks, held>;
   using mesh_kick_columns = columns_if<keeps_mesh_kicks, mesh_kicks, mesh_kicks_by, mesh_kick_count>;
   using support_columns = union_of<columns_if<keeps_support, support, supported_by>,
@@ -94,7 +97,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
 
  public:
   /// All columns of the simulation.
-  using all = union_of<named, pair_kicks, held_columns, support_columns, mesh_kick_columns>;
+  using all = union_of<named, pair_kicks, clump_kicks, held_columns, support_columns, mesh_kick_columns>;
 
  private:
   /// Columns that `E` reads or writes in a member, if it `Has` it.
@@ -147,6 +150,9 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       union_of<columns<>, writes_if<E, pairs_in<E, S> || has_try_wake<E, S>::value>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
+  /// Columns that are written for all spheres of a clump that effects have seen as one.
+  using clump_writes = difference_of<union_of<columns<>, writes_if<E, sees_clumps<E>>...>,
+                                     columns<position, velocity, angular_velocity>>;
   /// Columns on which forces on a particle depend that is alone.
   using acceleration_reads = union_of<columns<>, reads_if<E, changes_velocity<E, S>>...>;
   /// Columns that are read and written for particles that press on the mesh.
@@ -218,17 +224,23 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   void prepare([[maybe_unused]] S dt) {
     if constexpr (any_resistance) this->resistance = resistance_over(S(integrator::kick_before) * dt);
   }
-  template <class P>
+  /// Accelerates a particle, or `OfClump` one in place of a clump, without what `push_sphere` does.
+  template <bool OfClump = false, class P>
   COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (any_resistance) {
       vec3<S> const before = p[velocity{}];
       vec3<double> const flow = flow_around(p);
-      accelerate_without_resistance(p, dt);
+      accelerate_without_resistance<OfClump>(p, dt);
       bool const is_ready = this->resistance.time == static_cast<double>(dt);
       p[velocity{}] = velocity_in(is_ready ? this->resistance : resistance_over(dt), flow, before, p[velocity{}]);
     } else {
-      accelerate_without_resistance(p, dt);
+      accelerate_without_resistance<OfClump>(p, dt);
     }
+  }
+  /// Lets effects accelerate a sphere of a clump that do so for each sphere.
+  template <class P>
+  COLLIDE_HD_INLINE void push_sphere(P& p, S dt) const {
+    (accelerate_if<E, pushes_spheres<E, S>>(p, dt), ...);
   }
   /// Accelerates some particles, each for its own time, on a CPU; those for 0 are left out.
   template <class P, unsigned N>
@@ -294,9 +306,10 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   COLLIDE_HD_INLINE void try_wake(P& p, P& other) const {
     (try_wake_of<E>(p, other), ...);
   }
-  template <class P>
+  /// Ends the step of a particle, or, of those that see it as one sphere, of a clump.
+  template <bool OfClump = false, class P>
   COLLIDE_HD_INLINE void end_step([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    (end_step_of<E>(p, dt), ...);
+    (end_step_of<E, OfClump>(p, dt), ...);
   }
 
  private:
@@ -365,15 +378,15 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
     return {linear, quadratic, static_cast<double>(time)};
   }
   /// Lets all effects accelerate a particle but those with a resistance.
-  template <class P>
+  template <bool OfClump = false, class P>
   COLLIDE_HD_INLINE void accelerate_without_resistance([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;
     if constexpr (keeps_pair_torques) p[angular_velocity{}] += p[pair_angular_acceleration{}] * dt;
-    (accelerate_of<E>(p, dt), ...);
+    (accelerate_if<E, !(OfClump && pushes_spheres<E, S>)>(p, dt), ...);
   }
-  template <class F, class P>
-  COLLIDE_HD_INLINE void accelerate_of([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (has_accelerate<F, S>::value) {
+  template <class F, bool Does, class P>
+  COLLIDE_HD_INLINE void accelerate_if([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (Does && has_accelerate<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().accelerate(seen, dt);
     }
@@ -459,14 +472,19 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       of<F>().try_wake(seen, seen_other);
     }
   }
-  template <class F, class P>
+  template <class F, bool OfClump, class P>
   COLLIDE_HD_INLINE void end_step_of([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (has_end_step_alone<F, S>::value) {
+    if constexpr (has_clumps && !OfClump && sees_clumps<F>) {
+      if (p[in_clump{}] != no_id) return;
+    }
+    if constexpr (OfClump && !sees_clumps<F>) {
+      return;
+    } else if constexpr (has_end_step_alone<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().end_step(seen, dt);
     } else if constexpr (asks_forces<F>) {
       particle_access<F, P> seen(p);
-      of<F>().end_step(seen, forces_on<effect_list, P, S>{*this, p}, dt);
+      of<F>().end_step(seen, forces_on<effect_list, OfClump, P, S>{*this, p}, dt);
     }
   }
 };

@@ -109,8 +109,20 @@ using end_step_alone_call = decltype(std::declval<E const&>().end_step(std::decl
 template <class E, class S>
 using has_end_step_alone = std::bool_constant<is_valid<end_step_alone_call, E, S>>;
 
-/// The forces of a list of effects, for an effect at the end of a step.
-template <class Effects, class P, class S>
+/// True of an effect whose `end_step` sees a clump as one sphere, of its volume and at its centre.
+template <class E, class = void>
+inline constexpr bool sees_clumps = false;
+template <class E>
+inline constexpr bool sees_clumps<E, std::void_t<decltype(E::sees_clumps)>> = E::sees_clumps;
+
+/// True of an effect that accelerates by more than motion: in a clump each sphere by itself.
+using motion_columns = columns<position, velocity, angular_velocity>;
+template <class E, class S>
+inline constexpr bool pushes_spheres =
+    has_accelerate<E, S>::value&& difference_of<union_of<reads_of<E>, writes_of<E>>, motion_columns>::size != 0;
+
+/// The forces of a list of effects, for an effect at the end of a step, `OfClump` or of a particle.
+template <class Effects, bool OfClump, class P, class S>
 struct forces_on {
   static constexpr S kick_after = S(Effects::integrator::kick_after);  ///< part of the step's acceleration that is last
   static constexpr bool have_contacts = Effects::keeps_pair_forces;    ///< contacts are among them
@@ -121,7 +133,7 @@ struct forces_on {
   /// How much they change the velocity of the particle in the time `dt`.
   COLLIDE_HD_INLINE vec3<S> change(S dt) const {
     P next = particle;
-    effects.accelerate(next, dt);
+    effects.template accelerate<OfClump>(next, dt);
     return next[velocity{}] - particle[velocity{}];
   }
 };

@@ -58,8 +58,11 @@ class step_phases {
     (check_box_of<Effect>(), ...);
     if constexpr (effects_type::repeats) check_sides();
     ((check_time_step_of<Effect>(s_.effects, dt, s_.smallest)), ...);
-    if (!effects_type::any_pair_contact && s_.effects.makes_only_where_free())
-      throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
+    if ((!effects_type::any_pair_contact || effects_type::has_clumps) && s_.effects.makes_only_where_free())
+      throw error(
+          "collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact, and does "
+          "not "
+          "know clumps");
   }
 
   /// The part of a step before particles meet.
@@ -78,7 +81,7 @@ class step_phases {
       s_.space.for_each(1, advance_time{s_.particles.time, double(dt), s_.effects.due(static_cast<double>(dt))});
     if constexpr (effects_type::ends_after_meeting) move(dt);
     if constexpr (effects_type::has_clumps)
-      for_each(move_clumps<S, effects_type>{s_.particles, s_.effects, s_.effects.space(), dt});
+      for_each(step_clumps<S, effects_type, false>{s_.particles, s_.effects, s_.effects.space(), dt});
     wake_by_bodies(dt);
     wake_where_others_went(dt);
   }
@@ -134,7 +137,7 @@ class step_phases {
   /// The part of a step after particles have met.
   void end_step(S dt) {
     if constexpr (effects_type::has_clumps)
-      for_each(end_clumps<S, effects_type>{s_.particles, s_.effects, s_.effects.space(), dt});
+      for_each(step_clumps<S, effects_type, true>{s_.particles, s_.effects, s_.effects.space(), dt});
     if constexpr (effects_type::ends_after_meeting) {
       for_each(end_particles<S, effects_type>{s_.particles, s_.effects, dt});
     } else {

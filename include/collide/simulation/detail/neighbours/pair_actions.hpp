@@ -222,7 +222,8 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
       using effect_type = std::decay_t<decltype(effect)>;
       auto const own = as_met(effect, p);
       vec3<S> v = own.velocity, spin = own.spin;
-      S const impulse = this->dt / effect_type::mass_of(own);
+      particle_access<effect_type, interaction> const seen(p.self);
+      S const impulse = this->dt * effect_type::template of_clump<S>(seen) / effect_type::mass_of(own);
       auto const take = [&] {
         for (std::uint32_t k = 0; k < size; ++k) {
           std::uint32_t const item = entries[k] >> 1;

@@ -14,40 +14,57 @@ template <class S, class Effects>
 struct moving_clump {
   using state_type = particle_state<S, typename Effects::all>;
   using part = columns<clump_centre, clump_velocity, clump_momentum, clump_rotation, clump_inertia>;
+  using sphere_type = particle<S, typename Effects::integration_reads>;
 
   state_type const& state;
   id first;
   particle<S, part> own;
+  sphere_type whole;                                           ///< as effects see it that see one particle
+  vec3<S> pushed_by{S(0), S(0), S(0)}, turned_by = pushed_by;  ///< changes of velocity and momentum by contacts
 
   COLLIDE_HD_INLINE moving_clump(state_type const& of, std::size_t i) : state(of), first(static_cast<id>(i)) {
     state.load(own, i, part{});
+    state.load(whole, i);
+    whole.the_radius = own[clump_inertia{}].of[3];
   }
 
   /// Forces on all spheres, in their order, and what else accelerates at the centre, for a time.
   COLLIDE_HD_INLINE void kick(Effects const& effects, S time) {
     turned_axes<S> const axes(own[clump_rotation{}]);
-    vec3<S> force(S(0), S(0), S(0)), torque = force;  // over the mass
-    S const volume = own[clump_inertia{}].of[3];
+    vec3<S> force(S(0), S(0), S(0)), torque = force, more = force, more_torque = force;  // over the mass
     for_each_sphere([&](std::size_t i) {
-      S const r = state.radius_at(i), share = r * r * r / volume;
+      S const r = state.radius_at(i), share = 1 / state.at(clump_mass{})[i];
       vec3<S> const arm = axes.to_space(vector(clump_offset{}, i)), by = vector(pair_acceleration{}, i) * share;
       force += by;
       torque += cross(arm, by) + vector(pair_angular_acceleration{}, i) * (S(0.4) * r * r * share);
+      if constexpr (Effects::any_push) {
+        vec3<S> const push = pushed(effects, i, time) * share;
+        more += push;
+        more_torque += cross(arm, push);
+      }
     });
-    particle<S, typename Effects::integration_reads> p;
-    state.load(p, first);
-    p[position{}] = own[clump_centre{}];
-    p[velocity{}] = own[clump_velocity{}];
-    p[pair_acceleration{}] = force;
-    p[pair_angular_acceleration{}] = vec3<S>(S(0), S(0), S(0));
-    effects.accelerate(p, time);
-    own[clump_velocity{}] = p[velocity{}];
+    pushed_by = force * time, turned_by = torque * time;
+    if constexpr (Effects::any_push) force += more, torque += more_torque;
+    whole[position{}] = own[clump_centre{}];
+    whole[velocity{}] = own[clump_velocity{}];
+    whole[pair_acceleration{}] = force;
+    whole[pair_angular_acceleration{}] = vec3<S>(S(0), S(0), S(0));
+    effects.template accelerate<true>(whole, time);
+    own[clump_velocity{}] = whole[velocity{}];
     own[clump_momentum{}] += torque * time;
   }
 
   COLLIDE_HD_INLINE void move(S time) {
     own[clump_centre{}] += own[clump_velocity{}] * time;
     turn_freely(own[clump_rotation{}], own[clump_inertia{}], own[clump_momentum{}], time);
+  }
+
+  /// Ends its step: it is inside a box that repeats, and effects see it.
+  COLLIDE_HD_INLINE void end(Effects const& effects, typename Effects::space_type const& space, S dt) {
+    if constexpr (Effects::repeats) own[clump_centre{}] = space.inside(own[clump_centre{}]);
+    whole[position{}] = own[clump_centre{}];
+    effects.template end_step<true>(whole, dt);
+    for_each_sphere([&](std::size_t i) { state.store(whole, i, typename Effects::clump_writes{}); });
   }
 
   /// Gives spheres their velocities, and, if it has `moved`, their places, which are inside a box that repeats.
@@ -62,6 +79,12 @@ struct moving_clump {
       if constexpr (Effects::repeats) p[position{}] = space.inside(p[position{}]);
       p[velocity{}] = own[clump_velocity{}] + cross(turning, arm);
       p[angular_velocity{}] = turning;
+      if constexpr (contains<typename Effects::all, clump_push>) {
+        particle<S, columns<clump_push, clump_turn>> by;
+        by[clump_turn{}] = turning_of(axes, own[clump_inertia{}], turned_by);
+        by[clump_push{}] = pushed_by + cross(by[clump_turn{}], arm);
+        if (!moved) state.store(by, i, columns<clump_push, clump_turn>{});
+      }
       if (moved) state.store(p, i, columns<position>{});
       state.store(p, i, columns<velocity, angular_velocity>{});
     });
@@ -74,6 +97,14 @@ struct moving_clump {
   }
 
  private:
+  /// The acceleration of a sphere by effects that know more of it than its motion.
+  COLLIDE_HD_INLINE vec3<S> pushed(Effects const& effects, std::size_t i, S time) const {
+    sphere_type p;
+    state.load(p, i);
+    vec3<S> const before = p[velocity{}];
+    effects.push_sphere(p, time);
+    return (p[velocity{}] - before) * (1 / time);
+  }
   template <class Column>
   COLLIDE_HD_INLINE vec3<S> vector(Column, std::size_t i) const {
     S const* const x = state.at(Column{}) + 3 * i;
@@ -81,9 +112,10 @@ struct moving_clump {
   }
 };
 
-/// Kernel functor of `for_each` over particles: the first half kick of clumps, and their way.
-template <class S, class Effects>
-struct move_clumps {
+/// Kernel functor of `for_each` over particles: the first half kick of clumps and their way, or the second, which
+/// `Ends` their step.
+template <class S, class Effects, bool Ends>
+struct step_clumps {
   particle_state<S, typename Effects::all> state;
   Effects effects;
   typename Effects::space_type space;
@@ -92,26 +124,14 @@ struct move_clumps {
   COLLIDE_HD void operator()(std::size_t i) const {
     if (state.at(in_clump{})[i] != i) return;
     moving_clump<S, Effects> clump(state, i);
-    clump.kick(effects, S(Effects::integrator::kick_before) * dt);
-    clump.move(dt);
-    clump.store(space, true);
-  }
-};
-
-/// Kernel functor of `for_each` over particles: the second half kick of clumps.
-template <class S, class Effects>
-struct end_clumps {
-  particle_state<S, typename Effects::all> state;
-  Effects effects;
-  typename Effects::space_type space;
-  S dt;
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    if (state.at(in_clump{})[i] != i) return;
-    moving_clump<S, Effects> clump(state, i);
-    clump.kick(effects, S(Effects::integrator::kick_after) * dt);
-    if constexpr (Effects::repeats) clump.own[clump_centre{}] = space.inside(clump.own[clump_centre{}]);
-    clump.store(space, false);
+    if (effects.is_inactive(clump.whole)) return;
+    clump.kick(effects, S(Ends ? Effects::integrator::kick_after : Effects::integrator::kick_before) * dt);
+    if constexpr (Ends) {
+      clump.end(effects, space, dt);
+    } else {
+      clump.move(dt);
+    }
+    clump.store(space, !Ends);
   }
 };
 
@@ -136,20 +156,17 @@ template <class Space, class S, class Effects, class E>
 constexpr bool check_beside_clumps() {
   using motion = columns<position, velocity, angular_velocity>;
   using written = writes_of<E>;
-  using named = union_of<written, reads_of<E>>;
-  constexpr bool is_known = std::is_same<E, clumps>::value || std::is_same<E, periodic_box>::value;
+  constexpr bool is_known = std::is_same<E, clumps>::value || std::is_same<E, periodic_box>::value || sees_clumps<E> ||
+                            follows_pair_contacts<E> || is_source<E>;
   constexpr bool moves =
       intersection_of<motion, written>::size != 0 &&
       (has_end_step<E, S>::value || has_begin_step<E, Space, particle_state<S, typename Effects::all>, S>);
-  static_assert(
-      is_known || !(moves || asks_forces<E>),
-      "collide: clumps: an effect that moves particles when a step begins or ends, such as box_walls, or asks "
-      "for forces, such as mass_flow, does not know them");
-  static_assert(!has_is_inactive<E, S>::value && !contains<written, alive>,
-                "collide: clumps: sleep, emit and absorbing_box do not know them yet");
-  static_assert(!has_accelerate<E, S>::value || difference_of<named, motion>::size == 0,
-                "collide: clumps: an effect that accelerates them, as one particle at the centre, knows nothing but "
-                "motion; external_forces are of each sphere");
+  static_assert(is_known || !(moves || asks_forces<E>),
+                "collide: clumps: an effect that moves particles when a step begins or ends, such as box_walls, does "
+                "not know them: take a mesh in place of box_walls");
+  static_assert(is_known || !(has_is_inactive<E, S>::value || contains<written, alive>),
+                "collide: clumps: sleep, and effects that make or leave out particles, do so with single spheres, not "
+                "with clumps");
   return true;
 }
 template <class Space, class S, class Effects, class... E>
@@ -157,9 +174,10 @@ constexpr bool check_clumps() {
   if constexpr (Effects::has_clumps) {
     static_assert(Effects::ends_after_meeting && Effects::keeps_pair_torques,
                   "collide: clumps need velocity_verlet, and forces between particles: name granular_contact");
-    static_assert(!Effects::any_mesh_contact,
-                  "collide: clumps press on the mesh by the forces of granular_contact: bounce, friction, adhesion and "
-                  "other impulses do not know them");
+    static_assert(
+        !Effects::any_mesh_contact,
+        "collide: clumps press on the mesh by the forces of granular_contact: bounce, friction, adhesion, absorb "
+        "and other impulses do not know them");
     static_assert((check_beside_clumps<Space, S, Effects, E>() && ...));
   }
   return true;
