@@ -114,10 +114,8 @@ class step_phases {
       std::uint32_t const lanes = list_type::template lanes_for<execution_space>(s_.particles.size);
       s_.space.for_each(lanes * s_.particles.size,
                         list_type{s_.particles, s_.effects, triangles, memory, pressing, what, lanes});
-      std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
-      s_.space.for_each(max(s_.particles.size, threads),
-                        press_on_mesh<S, effects_type, mesh_type, memory_type>{
-                            s_.particles, s_.effects, triangles, memory, pressing, pool, dt, what, threads});
+      for_each(press_on_mesh<S, effects_type, mesh_type, memory_type>{s_.particles, s_.effects, triangles, memory,
+                                                                      pressing, pool, dt, what});
     }
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.

@@ -248,9 +248,7 @@ inline overlap_item* overlap_items_of_thread(std::size_t n) {
 }
 #endif
 
-/// Kernel functor of `for_each` over at least as many as there are particles: those on the list press on the mesh.
-/// Where these are so few that they do not fill a device of `threads`, they are apart: threads that run together wait
-/// for each other.
+/// Kernel functor of `for_each` over as many as there are particles: those on the list press on the mesh.
 template <class S, class Effects, class Triangles, class Memory>
 struct press_on_mesh {
   using effects_type = Effects;
@@ -266,13 +264,9 @@ struct press_on_mesh {
   overlap_pool pool;
   S dt;
   meeting what;
-  std::size_t threads;
 
   COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const {
-    std::size_t const count = *pressing.count;
-    std::size_t apart = 1;
-    while (apart < 32 && 2 * apart * count <= threads) apart *= 2;
-    if (k % apart == 0 && k / apart < count) press_with(pressing.particles[k / apart]);
+    if (k < *pressing.count) press_with(pressing.particles[k]);
   }
 
  protected:
