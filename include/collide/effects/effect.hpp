@@ -164,6 +164,9 @@ void for_each_part_of(E& of, F const& f) {
   }
 }
 
+/// Number of the body of a frame; 0 is that of what rests.
+COLLIDE_HD_INLINE id body_of_frame(int frame) { return frame == 0 ? no_id : static_cast<id>(frame - 1); }
+
 }  // namespace detail
 
 /// The impulse from the mesh to a particle, as `on_mesh_impulse` gets it: changes per mass, in the world.

@@ -102,11 +102,14 @@ void check_several(std::vector<tests::near_case> const& cases) {
       bool const passes = near.reaching(box, 0) == 0xff && box.overlaps(made.ball.centre, made.ball.radius);
       lost += hit && !passes;
     }
-    batch.filter_batch([&](int k) { return detail::filter_branchless(batch.triangle_of(k), batch.sphere_of(k)); });
-    for (std::size_t i = 0; i < last - first; ++i) {
-      auto const v = static_cast<detail::verdict>(batch.verdicts[i]);
-      sure += v == detail::verdict::hit || v == detail::verdict::miss;
-      wrong += v == (hits[i] ? detail::verdict::miss : detail::verdict::hit);
+    for (S const scale : {S(1), S(0x1p-12), S(0x1p12)}) {
+      batch.filter_batch(
+          [&](int k) { return detail::filter_branchless(batch.triangle_of(k), batch.sphere_of(k), scale); });
+      for (std::size_t i = 0; i < last - first; ++i) {
+        auto const v = static_cast<detail::verdict>(batch.verdicts[i]);
+        sure += scale == 1 && (v == detail::verdict::hit || v == detail::verdict::miss);
+        wrong += v == (hits[i] ? detail::verdict::miss : detail::verdict::hit);
+      }
     }
   }
   CHECK(wrong == 0);
@@ -176,6 +179,22 @@ TEST_CASE_TEMPLATE("sorted spheres: the same pairs, whoever looks for them and w
   SUBCASE("cells that wrap around") { check_sorted<S>(io::clusters_scene(20000, 500, 4)); }
   SUBCASE("everything in one cell") { check_sorted<S>(io::pile_scene(3000, 100, 5)); }
   SUBCASE("all spheres near") { check_sorted<S>(io::terrain_scene(30000, 1000, 6)); }
+}
+
+TEST_CASE("sorted spheres: a scene in other units has the same pairs") {
+  numbers<float> made(io::study_scene(20000, 1000, 7));
+  collide::detector<collide::bucket> detector(collide::host(1));
+  auto const found = [&] {
+    return detector.detect(made.mesh(), made.spheres(made.radii.size()), collide::pairs(collide::order::canonical))
+        .to_host();
+  };
+  auto const expected = found();
+  REQUIRE(expected.size() > 500);
+  for (float const factor : {0x1p-10f, 0x1p-10f, 0x1p-20f, 0x1p60f}) {  // the last one is of 2^20
+    for (auto* numbers : {&made.vertices, &made.centres, &made.radii})
+      for (float& x : *numbers) x *= factor;
+    CHECK(found() == expected);
+  }
 }
 
 TEST_CASE_TEMPLATE("sorted spheres: a verdict that is given without branches is right, and a box loses nothing", S,

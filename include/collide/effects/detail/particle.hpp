@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include <collide/core/memory.hpp>
 #include <collide/effects/detail/column_list.hpp>
 #include <collide/exact/detail/numeric/pack.hpp>
 
@@ -311,6 +312,37 @@ struct particle_state<S, columns<C...>>
     }
     block.store_transposed(s, reinterpret_cast<pack_type*>(at(D{})),
                            static_cast<std::uint32_t>(first / particles_per_pack), write);
+  }
+};
+
+/// The memory of a column.
+template <class C, class S>
+struct buffer_of {
+  buffer<column_element<C, S>> memory;
+};
+
+/// The memory of all columns.
+template <class S, class List>
+struct column_buffers;
+template <class S, class... C>
+struct column_buffers<S, columns<C...>> : buffer_of<C, S>... {
+  static constexpr std::size_t bytes_per_particle = (column_bytes<C, S> + ... + std::size_t{0});
+
+  void reserve([[maybe_unused]] std::pmr::memory_resource* resource, [[maybe_unused]] std::size_t n) {
+    (static_cast<buffer_of<C, S>&>(*this).memory.reserve(resource, n * std::size_t(column_layout<C, S>::width)), ...);
+  }
+
+  std::size_t bytes() const {
+    return (static_cast<buffer_of<C, S> const&>(*this).memory.bytes() + ... + std::size_t{0});
+  }
+
+  particle_state<S, columns<C...>> state(std::size_t size, std::size_t placed, S radius) const {
+    return {pointer_of<C, S>{static_cast<buffer_of<C, S> const&>(*this).memory.data()}...,
+            {},
+            size,
+            placed,
+            radius,
+            nullptr};
   }
 };
 

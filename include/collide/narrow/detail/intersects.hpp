@@ -66,13 +66,13 @@ COLLIDE_HD_INLINE filter_result filter_exact(triangle<S> const& t, sphere<S> con
   return {filtered_test(narrow_to<float>(l), static_cast<float>(size)), stage::single_filter};
 }
 
-/// `filter_exact` without branches, so that a compiler makes vector code of a loop over several pairs. Those whose
-/// coordinates would have to be rescaled are `out_of_range`.
+/// `filter_exact` without branches, so that a compiler makes vector code of a loop over several pairs. All are scaled
+/// by `scale`, a power of two of at most 2^50; those that are too large or small then are `out_of_range`.
 template <class S>
-COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s) {
+COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s, S scale = S(1)) {
   using bounds = filter_bounds<float>;
-  local_triangle<S> const l = to_local<S>(t, s);
-  bool const near = box_is_near(l);
+  local_triangle<S> const unscaled = to_local<S>(t, s), l = scaled(unscaled, scale);
+  bool const near = box_is_near(unscaled);
   S const size = max_norm(l);
   bool const sized = (size >= S(bounds::smallest)) & (size <= S(bounds::largest));
   int const sure = static_cast<int>(filtered_test<true>(narrow_to<float>(l), static_cast<float>(size)));
@@ -110,8 +110,8 @@ struct exact_predicate : std::true_type {
     return filter_exact(t, s).verdict;
   }
   template <class S>
-  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s) {
-    return detail::filter_branchless(t, s);
+  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s, S scale = S(1)) {
+    return detail::filter_branchless(t, s, scale);
   }
   template <class S>
   static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, sphere<S> const& s) {

@@ -66,10 +66,13 @@ struct candidate_batch {
   /// Takes the hits to the pipeline and empties the batch.
   template <class Pipeline, class Block>
   void decide(Pipeline const& pipeline, Block& block, pipeline_storage<Block>& hits) {
+    if (size == 0) return;
     using stages = filtered_predicate<typename Pipeline::narrow_phase>;
     constexpr bool rest = is_discrete<typename Pipeline::narrow_phase, S>;
     if constexpr (rest) {
-      filter_batch([&](int k) { return stages::filter_branchless(triangle_of(k), sphere_of(k)); });
+      // pairs that wait together are of about one size
+      S const scale = min(inverse_power_of_two(max_norm(to_local<S>(triangle_of(0), sphere_of(0)))), S(0x1p50));
+      filter_batch([&](int k) { return stages::filter_branchless(triangle_of(k), sphere_of(k), scale); });
     } else {
       filter_batch(
           [&](int k) { return stages::filter_branchless(triangle_of(k), sphere_of(k), midpoint_sphere_of(k)); });

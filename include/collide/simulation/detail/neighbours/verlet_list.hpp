@@ -30,8 +30,8 @@
 #include <vector>
 
 #include <collide/core/memory.hpp>
-#include <collide/effects/detail/column_buffers.hpp>
 #include <collide/effects/detail/host_members.hpp>
+#include <collide/effects/detail/particle.hpp>
 #include <collide/exact/detail/numeric/rounding.hpp>
 #include <collide/simulation/detail/neighbours/births.hpp>
 #include <collide/simulation/detail/neighbours/build_lists.hpp>

@@ -154,7 +154,7 @@ struct place_clumps {
 /// Says which effect of a scene with clumps would act on a sphere of one as if that were free.
 template <class Space, class S, class Effects, class E>
 constexpr bool check_beside_clumps() {
-  using motion = columns<position, velocity, angular_velocity>;
+  using motion = std::conditional_t<has_accelerate<E, S>::value, columns<position, angular_velocity>, motion_columns>;
   using written = writes_of<E>;
   constexpr bool is_known = std::is_same<E, clumps>::value || std::is_same<E, periodic_box>::value || sees_clumps<E> ||
                             follows_pair_contacts<E> || is_source<E>;

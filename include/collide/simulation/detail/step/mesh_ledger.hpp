@@ -8,9 +8,6 @@
 
 namespace collide::detail {
 
-/// Number of the body of a frame.
-COLLIDE_HD_INLINE id body_of_frame(int frame) { return frame == 0 ? no_id : static_cast<id>(frame - 1); }
-
 /// Calls f(support, supported_by) of each surface that may support a particle.
 template <class Particle, class F>
 COLLIDE_HD_INLINE void for_each_support(Particle& p, F const& f) {
