@@ -299,11 +299,10 @@ std::vector<Sum> sums_over_mesh_contacts(simulation<Detector, Effect...> const& 
   sums.reserve(s.space.resource(), found.size());
   using kernel = sum_over_mesh_contacts<S, typename simulation<Detector, Effect...>::effects_type,
                                         std::decay_t<decltype(triangles)>, std::decay_t<decltype(memory)>, F, Sum>;
-  s.space.for_each(
-      found.size(),
-      kernel{{s.particles, s.effects, triangles, memory, {}, empty_overlap_pool(s), S(0), meeting::of_all, 0},
-             f,
-             sums.data()});
+  s.space.for_each(found.size(),
+                   kernel{{s.particles, s.effects, triangles, memory, {}, empty_overlap_pool(s), S(0), meeting::of_all},
+                          f,
+                          sums.data()});
   s.space.copy_to_host(found.data(), sums.data(), found.size());
   return found;
 }

@@ -71,7 +71,7 @@ struct simulation_state {
 
   neighbour_lists neighbours{};
   surfaces_type surfaces{};                 ///< what contacts with the mesh remember
-  buffer<id> pressing{};                    ///< particles that may press on the mesh
+  buffer<pressing_particle> pressing{};     ///< particles that may press on the mesh
   buffer<std::uint32_t> pressing_counts{};  ///< of those, of used `overlaps`, and whether they were too few
   buffer<overlap_item> overlaps{};          ///< of a device, for particles that overlap many triangles
 };

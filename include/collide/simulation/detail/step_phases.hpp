@@ -95,7 +95,6 @@ class step_phases {
       advance_bodies(0, true);  // those that the caller drives, to where they begin
     bool const keeps_kicks = what == meeting::of_woken;
     if constexpr (effects_type::any_pair_contact) {
-      if (!keeps_kicks && !s_.neighbours.inside_is_done()) forget_pair_kicks();
       if (!keeps_kicks || !effects_type::keeps_support) {
         s_.neighbours.renew(s_.space, with_copies, s_.effects.space());
         settle_births(with_copies, dt);
@@ -111,17 +110,16 @@ class step_phases {
       using memory_type = std::decay_t<decltype(memory)>;
       pressing_list const pressing{s_.pressing_counts.data(), s_.pressing.data()};
       overlap_pool const pool = empty_overlap_pool(s_);
-      for_each(list_pressing<S, effects_type, mesh_type, memory_type>{s_.particles, s_.effects, triangles, memory,
-                                                                      pressing, what});
-      std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
-      s_.space.for_each(max(s_.particles.size, threads),
-                        press_on_mesh<S, effects_type, mesh_type, memory_type>{
-                            s_.particles, s_.effects, triangles, memory, pressing, pool, dt, what, threads});
+      using list_type = list_pressing<S, effects_type, mesh_type, memory_type>;
+      std::uint32_t const lanes = list_type::template lanes_for<execution_space>(s_.particles.size);
+      s_.space.for_each(lanes * s_.particles.size,
+                        list_type{s_.particles, s_.effects, triangles, memory, pressing, what, lanes});
+      for_each(press_on_mesh<S, effects_type, mesh_type, memory_type>{s_.particles, s_.effects, triangles, memory,
+                                                                      pressing, pool, dt, what});
     }
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.
   void meet_inside(particles_type const& with_copies, S dt) {
-    forget_pair_kicks();
     s_.neighbours.interact_inside(s_.space, with_copies, s_.effects, dt);
   }
   /// Says which of those that a source has made overlap others, once the lists are renewed.
