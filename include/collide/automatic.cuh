@@ -119,6 +119,9 @@ struct automatic {
       }
     }
 
+    /// Memory that is free during a query.
+    detail::spare_pairs spare() const { return strategy_ == strategy::grid ? grid_.spare() : detail::spare_pairs{}; }
+
     /// The triangles near a single sphere, for a kernel of a simulation; valid until the next build or prepare.
     auto mesh_lookup() const {
       using ref = detail::grid_or_tree_ref<S, decltype(tree_.ref())>;

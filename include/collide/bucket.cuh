@@ -87,13 +87,14 @@ class bucket::index {
     cells_.measure(space);
   }
 
-  /// Says that one grid for spheres up to `radius` serves until the next build; the next query makes it, as it knows
-  /// better what it costs. Where spheres are sorted into the cells it does nothing.
+  /// Says that grids for spheres up to `radius` serve until the next build; the next query makes them, as it knows
+  /// better what they cost: several if its spheres are many and of many radii. Where spheres are sorted into the cells
+  /// it does nothing.
   template <class Space>
   void prepare(Space&, bucket const& options, S radius) {
     if (bins_spheres<Space>(options)) return;
     bool const serves = cells_.is_measured() && detail::is_valid_radius(radius) && detail::is_finite(radius);
-    given_ = serves ? detail::wanted_grids<S>{radius, 1} : detail::wanted_grids<S>{};
+    given_ = serves ? detail::wanted_grids<S>{radius, 1, false, radius} : detail::wanted_grids<S>{};
   }
 
   /// Makes the grids that the spheres need, unless they are there.
@@ -157,6 +158,9 @@ class bucket::index {
     cells_.template query<NarrowPhase>(space, spheres, output);
   }
 
+  /// Memory that is free during a query.
+  detail::spare_pairs spare() const { return cells_.spare(); }
+
   /// The triangles near a single sphere, for a kernel; valid until the next build or prepare.
   detail::bucket_ref<S> const& mesh_lookup() const { return cells_.ref(); }
 
@@ -196,6 +200,11 @@ class bucket::index {
         plan.makes_grids = plan.makes_grids || cells_.grids().spheres < plan.spheres;
       }
     }
+    // few of many triangles are read again by a query, so narrower cells hardly take longer to fill
+    if (!bucket_tuning<Space>::bins_spheres && mesh_.size() > detail::cell_index<S>::max_without_readback &&
+        spheres.size() <= mesh_.size() / 4) {
+      plan.spheres = 8 * spheres.size();
+    }
     return plan;
   }
 
@@ -224,7 +233,14 @@ class bucket::index {
   template <class Space, class Spheres>
   detail::query_plan<S> plan_grids(Space&, Spheres const& spheres, bool whole_boxes) {
     detail::wanted_grids<S> wanted = given_.value_or(detail::wanted_grids<S>{});
-    if (!given_) {
+    auto const& asked = cells_.grids().asked;
+    if (given_ && wanted.max_count != 0 && asked.max_count != 0 && asked.by_radii() && asked.given == wanted.given) {
+      wanted = asked;  // they serve any radii
+    } else if (given_ && wanted.max_count != 0 && !spheres.one_radius()) {
+      // to look at the radii takes a while, so only where there are spheres for two more grids
+      wanted.max_count = cells_.template max_grid_count<Space>(spheres.size() / 2);
+      if (wanted.max_count > 1) wanted.reach = -1;
+    } else if (!given_) {
       S const radius = spheres.common_radius();
       if (!spheres.one_radius()) {
         wanted = {-1, cells_.template max_grid_count<Space>(spheres.size())};
@@ -236,7 +252,7 @@ class bucket::index {
     detail::query_plan<S> plan;
     plan.makes_grids = cells_.is_measured() && wanted.max_count != 0 && !cells_.grids().asked.serve(wanted);
     plan.grids = plan.makes_grids ? wanted : cells_.grids().asked;
-    plan.asks_radii = cells_.grids().count != 0 && plan.grids.reach < 0;
+    plan.asks_radii = cells_.grids().count != 0 && plan.grids.by_radii() && !given_;
     return plan;
   }
 

@@ -117,9 +117,9 @@ class detector {
   }
 
   /// Prepares what depends on the mesh, for spheres at rest of up to a radius. The radius is a hint: results are the
-  /// same. On a device there is then one grid for all radii, and no query looks at all of them; on the host, without a
-  /// memory budget, only `automatic` uses it. A CUDA graph that has a query has the build before it, too, as the query
-  /// makes what it needs of the mesh.
+  /// same. On a device only the first query then looks at the radii, if they differ, and later ones are expected to
+  /// have such radii, too; on the host, without a memory budget, only `automatic` uses it. A CUDA graph that has a
+  /// query has the build before it, too, as the query makes what it needs of the mesh.
   ///
   /// \param mesh    triangles in memory of the space, not copied: valid and unchanged until the last query is done
   /// \param radius  the largest usual radius, in the units of the coordinates, not negative. Larger spheres are found

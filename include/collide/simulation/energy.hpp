@@ -300,10 +300,10 @@ std::vector<Sum> sums_over_mesh_contacts(simulation<Detector, Effect...> const& 
   using kernel = sum_over_mesh_contacts<S, typename simulation<Detector, Effect...>::effects_type,
                                         std::decay_t<decltype(triangles)>, std::decay_t<decltype(memory)>, F, Sum>;
   s.space.fill(s.pressing_counts.data() + 1, 0, sizeof(std::uint32_t));  // the pool is empty
-  s.space.for_each(found.size(),
-                   kernel{{s.particles, s.effects, triangles, memory, {}, overlap_pool_of(s), S(0), meeting::of_all, 0},
-                          f,
-                          sums.data()});
+  s.space.for_each(
+      found.size(),
+      kernel{
+          {s.particles, s.effects, triangles, memory, {}, overlap_pool_of(s), S(0), meeting::of_all}, f, sums.data()});
   s.space.copy_to_host(found.data(), sums.data(), found.size());
   return found;
 }

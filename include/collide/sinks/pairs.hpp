@@ -9,7 +9,7 @@ namespace collide {
 
 /// Every colliding (sphere, triangle) pair, each exactly once. `query` waits once, for their number;
 /// where there are more than its memory has room for, it makes room and runs a second time. Memory: 8 bytes for each
-/// pair that there is room for, at first as many as there are spheres on the host and an eighth of that on a GPU, or as
+/// pair that there is room for, at first as many as there are spheres on the host and a 32nd of that on a GPU, or as
 /// many as a sample tells (`reserve` says how many are wanted); and in canonical order what the sort takes.
 ///
 /// The pairs are in memory of the space, which the host may be unable to read: a loop over this object does not

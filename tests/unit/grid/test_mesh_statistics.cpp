@@ -121,9 +121,9 @@ using lanes_reversed = tests::lockstep<8, true>;
 /// The reaches that a block of `Space` chooses, where `before` is there.
 template <class Space>
 grid_reaches<float> chosen(size_histogram const& radii, float enough, std::uint64_t fewest, int most,
-                           grid_reaches<float> before = {}) {
+                           grid_reaches<float> before = {}, float given = -1) {
   bool const anew = before.count == 0;
-  Space().launch(1, choose_reaches<float>{&radii, &before, enough, fewest, most, anew});
+  Space().launch(1, choose_reaches<float>{&radii, &before, given, enough, fewest, most, anew});
   return before;
 }
 
@@ -166,6 +166,15 @@ TEST_CASE_TEMPLATE("reaches: grids a factor of 4 apart, each but the first for m
         float const enough = reaches[count - 1];
         CHECK(chosen<Space>(radii, enough, fewest, most).count == count);
         if (count > 1) CHECK(chosen<Space>(radii, reaches[0], fewest, most).count == 1);
+        for (float const given : {0.f, 0.01f, 1.f, 100.f}) {
+          CAPTURE(given);
+          auto const by_given = chosen<Space>(radii, 0.f, fewest, most, {}, given);
+          CHECK(by_given.reaches[0] == given);
+          for (int i = 1; i < by_given.count; ++i) {
+            CHECK(4 * by_given.reaches[i] <= by_given.reaches[i - 1] * 1.26f);
+            CHECK(up_to(by_given.reaches[i]) > fewest);
+          }
+        }
       }
     }
   }

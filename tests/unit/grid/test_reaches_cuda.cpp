@@ -8,8 +8,14 @@ TEST_CASE("reaches: spheres whose radii change have the pairs of all pairs, on t
   tests::check_changing_radii(collide::cuda_shared());
 }
 
+TEST_CASE("few: spheres of many radii, first and again, on the GPU") {
+  tests::many_radii const scene(50, 1000, 1000);
+  tests::check_changing_radii<collide::karabassi<>>(collide::cuda_shared(), scene);
+  tests::check_changing_radii<collide::karabassi_swept<>>(collide::cuda_shared(), scene);
+}
+
 TEST_CASE("reaches: queries of spheres of many radii can be captured in a graph, and follow radii that change") {
-  tests::many_radii const scene(200, 1500, 1000);
+  tests::many_radii const scene(200, 8000, 1000);
   cudaStream_t stream = nullptr;
   collide::cuda_check(cudaStreamCreate(&stream), "cudaStreamCreate");
   {

@@ -1,7 +1,10 @@
 /// Pairs that a quick attempt leaves open: the list of them, and what happens when it is full.
 #include <cmath>
+#include <vector>
 
 #include <doctest/doctest.h>
+
+#include <collide/karabassi_swept.hpp>
 
 #include "checks.hpp"
 #include "compositions.hpp"
@@ -46,15 +49,29 @@ struct counting_sink {
   }
 };
 
+/// A broad phase that cannot be asked for the triangles near one sphere.
+struct blind {
+  template <class S>
+  struct index : collide::all_pairs::index<S> {
+    void mesh_lookup() const = delete;
+    template <class Space>
+    void build(Space& space, blind const&, collide::mesh_view<S> mesh) {
+      collide::all_pairs::index<S>::build(space, collide::all_pairs(), mesh);
+    }
+    template <class Space, class RadiusOrSpheres>
+    void prepare(Space&, blind const&, RadiusOrSpheres const&) {}
+  };
+};
+
 using stepwise = tests::lockstep<64, true>;
 
-template <class NarrowPhase, class Space>
+template <class NarrowPhase, class Space, class BroadPhase = collide::bucket>
 int count_touching() {
   auto const made = touching_scene<float>(60, 60);
   auto const mesh = collide::indexed_mesh(made.mesh.vertices.data(), made.mesh.vertices.size() / 3,
                                           made.mesh.corners.data(), made.mesh.size());
   auto const balls = collide::spheres_xyz(made.spheres.centres.data(), made.spheres.size(), made.spheres.radii.data());
-  collide::detector<collide::bucket, NarrowPhase, Space> detector;
+  collide::detector<BroadPhase, NarrowPhase, Space> detector;
   return detector.detect(mesh, balls, counting_sink()).total;
 }
 
@@ -64,12 +81,47 @@ TEST_CASE_TEMPLATE("undecided: a few open pairs", S, float, double) {
   CHECK(tests::check_all(touching_scene<S>(3, 60), {}).size() == 120);
 }
 
-TEST_CASE_TEMPLATE("undecided: more open pairs than their list has room for", S, float, double) {
+TEST_CASE_TEMPLATE("undecided: more open pairs than their list has room for, and room beside the entries", S, float,
+                   double) {
   // the list has room for 1024 pairs and one per sphere
+  CHECK(tests::check_all(touching_scene<S>(20, 60), {}).size() == 800);
+}
+
+TEST_CASE_TEMPLATE("undecided: more open pairs than there is room for", S, float, double) {
   CHECK(tests::check_all(touching_scene<S>(60, 60), {}).size() == 2400);
+}
+
+TEST_CASE("undecided: of spheres that move more open pairs than their list has room for, each once") {
+  // on their ways along the plane z = 0 they pass several cells that list the same triangles
+  auto const made = touching_scene<float>(60, 60);
+  auto const mesh = collide::indexed_mesh(made.mesh.vertices.data(), made.mesh.vertices.size() / 3,
+                                          made.mesh.corners.data(), made.mesh.size());
+  auto const balls = collide::spheres_xyz(made.spheres.centres.data(), made.spheres.size(), made.spheres.radii.data());
+  std::vector<float> ways;
+  for (int i = 0; i < 60; ++i) ways.insert(ways.end(), {8.0f * float(i % 4), 6.0f * float(i % 3), 0});
+  auto const moving = collide::with_displacements(balls, static_cast<float const*>(ways.data()));
+  using narrow = collide::karabassi_swept<collide::exact>;
+  for (double width : {0.0, 3.0}) {
+    CAPTURE(width);
+    collide::bucket cells;
+    cells.cell_width = width;
+    collide::detector<collide::bucket, narrow, stepwise> detector(stepwise{}, cells);
+    collide::pairs found(collide::order::canonical);
+    detector.build(mesh);
+    detector.query(moving, found);
+    std::vector<collide::pair> expected;
+    for (collide::id s = 0; s < balls.size(); ++s) {
+      for (collide::id t = 0; t < mesh.size(); ++t) {
+        if (narrow::intersects(mesh[t], moving[s])) expected.push_back({s, t});
+      }
+    }
+    CHECK(expected.size() == 2400);
+    CHECK(found.to_host() == expected);
+  }
 }
 
 TEST_CASE_TEMPLATE("undecided: sinks and narrow phases of a user", Space, collide::host, stepwise) {
   CHECK(count_touching<collide::karabassi<>, Space>() == 2400);
   CHECK(count_touching<nothing_touches, Space>() == 0);
+  CHECK(count_touching<collide::karabassi<>, Space, blind>() == 2400);
 }

@@ -35,3 +35,20 @@ TEST_CASE("spatial hash: cells of a block have places of their own, one after th
     CHECK(places.size() == table::cells_per_block);
   }
 }
+
+TEST_CASE("spatial hash: blocks of a cube are together") {
+  using table = collide::detail::spatial_hash<float>;
+  table const cells{1, 4095};
+  for (std::int32_t x = -2; x < 2; ++x) {
+    std::set<std::uint32_t> blocks, cubes;
+    for (std::int32_t z = -16; z < 0; ++z) {
+      for (std::int32_t y = 16; y < 32; ++y) {
+        std::uint32_t const block = cells.number({16 * x, y, z}) / table::stride;
+        blocks.insert(block);
+        cubes.insert(block / 64);
+      }
+    }
+    CHECK(blocks.size() == 64);
+    CHECK(cubes.size() == 1);
+  }
+}

@@ -54,6 +54,9 @@ struct candidate_cursor {
 /// The base of all references: the triangles, and a cheap test for each.
 template <class S>
 struct mesh_lookup {
+  using cursor_type = candidate_cursor;
+  using range_type = candidate_range;
+
   mesh_view<S> mesh;
   triangle_aabb<S> const* boxes;  ///< may be null
 

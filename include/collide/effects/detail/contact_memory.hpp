@@ -86,15 +86,36 @@ struct kept_range {
   std::uint32_t first, count;
 };
 
+/// The memory of a contact where its numbers are apart.
+template <class S, class List>
+struct contact_slot {
+  S* first;
+  std::size_t apart;
+
+  COLLIDE_HD_INLINE contact_values<S, List> values() const {
+    contact_values<S, List> v;
+    v.for_each_number([&](S& x, int k, int) { x = first[std::size_t(k) * apart]; });
+    return v;
+  }
+  COLLIDE_HD_INLINE void set(contact_values<S, List> v) const {
+    v.for_each_number([&](S& x, int k, int) { first[std::size_t(k) * apart] = x; });
+  }
+};
+
 /// The memory of contacts, for kernels. Item k of the list of the particle at place i is `k * capacity + i`; those of
 /// runs are behind.
 template <class S, class List>
 struct contact_memory_ref {
-  contact_record<S, List>* records;
+  S* numbers;
+  std::size_t items_apart, numbers_apart;
   std::uint32_t* touching;      ///< of the particle at each place, a bit for each item of its list
   std::uint8_t* run_touching;   ///< of each item of runs
   kept_contact<S, List>* kept;  ///< while lists are made anew
   kept_range* kept_of;          ///< of each particle, by its number
+
+  COLLIDE_HD_INLINE contact_slot<S, List> slot(std::size_t item) const {
+    return {numbers + item * items_apart, numbers_apart};
+  }
 };
 template <class S>
 struct contact_memory_ref<S, columns<>> {};
@@ -116,28 +137,29 @@ buffer<T> grown(Space const& space, buffer<T> const& from, std::size_t n, std::s
   return longer;
 }
 
-/// The memory of contacts.
+/// The memory of contacts. On the host the numbers of an item are together, on a device those of items side by side.
 template <class S, class List>
 class contact_memory {
  public:
-  using record = contact_record<S, List>;
   static constexpr int width = contact_values<S, List>::width;
 
   /// All of it on the host.
   struct on_host {
-    std::vector<record> records;
+    std::vector<S> numbers;
+    std::size_t items_apart, numbers_apart;
     std::vector<std::uint32_t> touching;
     std::vector<std::uint8_t> run_touching;
 
     void append(std::vector<S>& to, std::size_t item) const {
-      to.insert(to.end(), records[item].numbers, records[item].numbers + width);
+      for (std::size_t k = 0; k < std::size_t(width); ++k)
+        to.push_back(numbers[item * items_apart + k * numbers_apart]);
     }
   };
-  template <std::size_t Listed, class Space>
-  on_host copied(Space const& space, std::size_t particles, std::size_t places, std::size_t in_runs) const {
-    on_host all{std::vector<record>(Listed * particles + in_runs), std::vector<std::uint32_t>(places),
+  template <class Space>
+  on_host copied(Space const& space, std::size_t places, std::size_t in_runs) const {
+    on_host all{std::vector<S>(numbers_.capacity()), items_apart(), numbers_apart(), std::vector<std::uint32_t>(places),
                 std::vector<std::uint8_t>(in_runs)};
-    space.copy_to_host(all.records.data(), records_.data(), all.records.size());
+    space.copy_to_host(all.numbers.data(), numbers_.data(), all.numbers.size());
     space.copy_to_host(all.touching.data(), touching_.data(), places);
     if (in_runs != 0) space.copy_to_host(all.run_touching.data(), run_touching_.data(), in_runs);
     return all;
@@ -180,9 +202,11 @@ class contact_memory {
     if (!kept.empty()) space.copy_from_host(kept_.data(), kept.data(), kept.size());
   }
 
-  void reserve(std::pmr::memory_resource* resource, std::size_t particles, std::size_t listed, std::size_t in_runs) {
+  void reserve(std::pmr::memory_resource* resource, std::size_t particles, std::size_t listed, std::size_t in_runs,
+               bool side_by_side) {
     std::size_t const items = listed * particles + in_runs;
-    records_.reserve(resource, items);
+    numbers_.reserve(resource, std::size_t(width) * items);
+    are_side_by_side_ = side_by_side;
     kept_.reserve(resource, items);
     touching_.reserve(resource, particles);
     kept_of_.reserve(resource, particles);
@@ -191,7 +215,7 @@ class contact_memory {
   /// Makes room for more items of runs than were there `before`, behind so many of lists, on the host: those stay.
   template <class Space>
   void grow(Space const& space, std::size_t in_lists, std::size_t before, std::size_t more) {
-    records_ = grown(space, records_, in_lists + before, more);
+    numbers_ = grown(space, numbers_, std::size_t(width) * (in_lists + before), std::size_t(width) * more);
     run_touching_ = grown(space, run_touching_, before, more);
   }
   /// Makes room to keep more, once nothing is kept.
@@ -204,14 +228,19 @@ class contact_memory {
     space.fill(kept_of_.data(), 0, n * sizeof(kept_range));
   }
   std::size_t bytes() const {
-    return records_.bytes() + kept_.bytes() + touching_.bytes() + kept_of_.bytes() + run_touching_.bytes();
+    return numbers_.bytes() + kept_.bytes() + touching_.bytes() + kept_of_.bytes() + run_touching_.bytes();
   }
   contact_memory_ref<S, List> ref() const {
-    return {records_.data(), touching_.data(), run_touching_.data(), kept_.data(), kept_of_.data()};
+    return {numbers_.data(),      items_apart(), numbers_apart(), touching_.data(),
+            run_touching_.data(), kept_.data(),  kept_of_.data()};
   }
 
  private:
-  buffer<contact_record<S, List>> records_;
+  std::size_t items_apart() const { return are_side_by_side_ ? 1 : std::size_t(width); }
+  std::size_t numbers_apart() const { return are_side_by_side_ ? numbers_.capacity() / std::size_t(width) : 1; }
+
+  buffer<S> numbers_;
+  bool are_side_by_side_ = false;
   buffer<kept_contact<S, List>> kept_;
   buffer<std::uint32_t> touching_;
   buffer<kept_range> kept_of_;
@@ -220,7 +249,7 @@ class contact_memory {
 template <class S>
 class contact_memory<S, columns<>> {
  public:
-  void reserve(std::pmr::memory_resource*, std::size_t, std::size_t, std::size_t) {}
+  void reserve(std::pmr::memory_resource*, std::size_t, std::size_t, std::size_t, bool) {}
   template <class Space>
   void clear(Space&, std::size_t) {}
   std::size_t bytes() const { return 0; }

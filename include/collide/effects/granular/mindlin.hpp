@@ -51,10 +51,10 @@ COLLIDE_HD_INLINE vec3<S> spring_force(Law const& law, granular_pair<S> const& p
   vec3<S> const damped = p.slip * dash, pull = spring * stiffness + damped;
   bool const with_dashpot = law.test == slip_test::spring_and_dashpot;
   vec3<S> const tested = with_dashpot ? pull : vec3<S>(spring * stiffness);
-  S const tested_length = length_of(tested);
-  auto const slides = tested_length > limit;
+  S const squared = dot(tested, tested);
+  auto const slides = squared > limit * limit;
   if (!any(slides)) return -pull;
-  vec3<S> const sliding = tested * (limit / tested_length);
+  vec3<S> const sliding = tested * (limit / sqrt_rn(squared));
   vec3<S> const left = (with_dashpot ? vec3<S>(sliding - damped) : sliding) * (1 / stiffness);
   spring = either(slides && stiffness > 0, left, spring);
   return either(slides, vec3<S>(-sliding), vec3<S>(-pull));

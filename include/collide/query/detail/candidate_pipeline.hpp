@@ -63,6 +63,15 @@ bool has_enough_of(Output const&, id, long) {
   return false;
 }
 
+/// Memory of an index that a query may write pairs to: from `*begin` to `end`, if there is any.
+struct spare_pairs {
+  pair* memory;
+  std::uint32_t const* begin;  ///< null: there is none
+  std::uint64_t end;
+
+  COLLIDE_HD_INLINE std::uint64_t size() const { return begin != nullptr && *begin < end ? end - *begin : 0; }
+};
+
 /// Pairs that the narrow phase's filter left open, for a kernel of their own; see deferred_pairs.hpp.
 struct deferred_pairs {
   struct counters {
@@ -72,12 +81,20 @@ struct deferred_pairs {
 
   counters* count;
   pair* pairs;
-  std::uint64_t capacity;
+  std::uint64_t own_capacity;
+  spare_pairs spare;  ///< for those that find no room there
+
+  /// How many pairs there is room for.
+  COLLIDE_HD_INLINE std::uint64_t capacity() const { return own_capacity + spare.size(); }
+
+  COLLIDE_HD_INLINE pair& operator[](std::uint64_t slot) const {
+    return slot < own_capacity ? pairs[slot] : spare.memory[*spare.begin + (slot - own_capacity)];
+  }
 
   COLLIDE_HD_INLINE void add(pair p) const {
     std::uint64_t const slot = fetch_add(&count->total, std::uint64_t{1});
     // guard: room
-    if (slot < capacity) pairs[slot] = p;
+    if (slot < capacity()) (*this)[slot] = p;
   }
 };
 

@@ -82,7 +82,7 @@ struct simulation_state {
   cell_order order{};
   bool is_in_cell_order = false;            ///< while some steps are made
   surfaces_type surfaces{};                 ///< what contacts with the mesh remember
-  buffer<id> pressing{};                    ///< particles that may press on the mesh
+  buffer<pressing_particle> pressing{};     ///< particles that may press on the mesh
   buffer<std::uint32_t> pressing_counts{};  ///< of those, of used `overlaps`, and whether they were too few
   bool is_pressing_known = false;           ///< for as long as these lists of neighbours hold
   buffer<overlap_item> overlaps{};          ///< of a device, for particles that overlap many triangles

@@ -102,7 +102,6 @@ class step_phases {
       advance_bodies(0, true);  // those that the caller drives, to where they begin
     bool const keeps_kicks = what == meeting::of_woken;
     if constexpr (effects_type::any_pair_contact) {
-      if (!keeps_kicks && !s_.neighbours.inside_is_done()) forget_pair_kicks();
       if (!keeps_kicks || !effects_type::keeps_support) {
         s_.neighbours.renew(s_.space, with_copies, s_.effects.space());
         if constexpr (state_type::meets_once) follow_lists();
@@ -116,7 +115,6 @@ class step_phases {
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.
   void meet_inside(particles_type const& with_copies, S dt) {
-    forget_pair_kicks();
     s_.neighbours.interact_inside(s_.space, with_copies, s_.effects, dt);
   }
   /// Says which of those that a source has made overlap others, once the lists are renewed.
@@ -278,15 +276,16 @@ class step_phases {
     bool const stays_listed = state_type::knows_near_mesh && what == meeting::in_step;
     if (!stays_listed || !s_.is_pressing_known || has_body_moved()) {
       s_.space.fill(list.count, 0, 2 * sizeof(std::uint32_t));  // and the pool is empty
-      for_each(list_pressing<S, effects_type, mesh_type, memory_type>{
-          s_.particles, s_.effects, triangles, memory, list, what, stays_listed ? margin_near_mesh(s_) : S(0)});
+      using list_type = list_pressing<S, effects_type, mesh_type, memory_type>;
+      std::uint32_t const lanes = list_type::template lanes_for<execution_space>(s_.particles.size);
+      s_.space.for_each(lanes * s_.particles.size, list_type{s_.particles, s_.effects, triangles, memory, list, what,
+                                                             lanes, stays_listed ? margin_near_mesh(s_) : S(0)});
       if constexpr (state_type::knows_near_mesh) s_.bodies.mark();
     }
     s_.is_pressing_known = stays_listed;
-    std::size_t const threads = execution_space::host_accessible ? 0 : std::size_t{1} << 15;  // of a large device
-    s_.space.for_each(execution_space::host_accessible ? *list.count : max(s_.particles.size, threads),
+    s_.space.for_each(execution_space::host_accessible ? *list.count : s_.particles.size,
                       press_on_mesh<S, effects_type, mesh_type, memory_type>{
-                          s_.particles, s_.effects, triangles, memory, list, overlap_pool_of(s_), dt, what, threads});
+                          s_.particles, s_.effects, triangles, memory, list, overlap_pool_of(s_), dt, what});
   }
   /// True if a body may have come to particles that are not listed as near the mesh.
   bool has_body_moved() const {

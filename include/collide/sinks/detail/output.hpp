@@ -218,7 +218,7 @@ class pair_collector {
   /// Its own array, with room for `pairs`, and as many as one may expect of so many spheres.
   template <class Space>
   pair* reserve_own(Space const& space, std::size_t spheres, std::size_t pairs) {
-    std::size_t const guess = spheres / 8 + 1024;
+    std::size_t const guess = spheres / 32 + 64;
     return own_.reserve(space.resource(), std::max({own_.capacity(), guess, pairs}));
   }
 

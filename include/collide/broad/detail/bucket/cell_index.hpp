@@ -45,13 +45,15 @@ struct wanted_grids {
   S reach = 0;               ///< of the only one; negative: as the radii of the spheres need it
   int max_count = 0;         ///< how many there may be
   bool whole_boxes = false;  ///< spheres that move look for triangles along their paths
+  S given = -1;              ///< how far the first of several reaches, if not as far as the radii need
 
   /// True if the radii of the spheres tell how far they reach.
   bool by_radii() const { return reach < 0; }
 
   /// True if these do for spheres that ask for `other`.
   bool serve(wanted_grids const& other) const {
-    return reach == other.reach && max_count >= other.max_count && whole_boxes == other.whole_boxes;
+    return reach == other.reach && max_count >= other.max_count && whole_boxes == other.whole_boxes &&
+           given == other.given;
   }
 };
 
@@ -139,17 +141,29 @@ class cell_index {
     return measures_.clear(space);
   }
 
+  /// For at most this many triangles the lists of cells get memory for the largest possible number of entries; for
+  /// more, or cells of a given width, the host reads the numbers back first.
+  static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
+
   /// False if the budget has no room for statistics, and so for grids.
   bool is_measured() const { return measures_.statistics.data() != nullptr; }
   grid_set<S> const& grids() const { return grids_; }
   bucket_ref<S> const& ref() const { return ref_; }
+
+  /// The end of the entries' memory, if the host has not asked how many there are: then about half of it is free.
+  spare_pairs spare() const {
+    static_assert(sizeof(cell_item) == sizeof(pair), "collide: pairs are written where entries could be");
+    if (!grids_.are_filled || waits_for_sizes()) return {};
+    return {reinterpret_cast<pair*>(const_cast<cell_item*>(ref_.entries)), ref_.total, ref_.capacity};
+  }
 
   /// How many grids there may be for spheres of many radii.
   template <class Space>
   int max_grid_count(std::size_t spheres) const {
     if (bucket_tuning<Space>::bins_spheres) return max_grids;
     if (serves_steps<Space> || spheres <= fewest_of_grid()) return 1;
-    return mesh_.size() > max_without_readback ? max_grids : grids_without_readback;
+    int const most = mesh_.size() > max_without_readback ? max_grids : grids_without_readback;
+    return static_cast<int>(min<std::size_t>(1 + spheres / fewest_of_grid(), static_cast<std::size_t>(most)));
   }
 
   /// Makes grids, as many as the budget allows, for these spheres, of which `all` are to come; `anew` if those that are
@@ -174,7 +188,7 @@ class cell_index {
     }
     if (anew) {
       forget_grids();  // until all is done: an exception leaves no half-made grid behind
-      plan_memory(space, max_count, max_count > 1 && !waits, all);
+      plan_memory(space, max_count, max_count > 1 && !waits, bucket_tuning<Space>::bins_spheres ? all : spheres.size());
     }
     grids_.are_filled = false;
     grids_.are_new = reaches == nullptr || waits ? nullptr : &reaches->are_new;
@@ -219,10 +233,7 @@ class cell_index {
   static constexpr std::size_t fixed_bytes =
       sizeof(mesh_statistics<S>) + max_grids * sizeof(grid<S>) + sizeof(measured_radii<S>);
 
-  /// For at most this many triangles the lists of cells get memory for the largest possible number of entries, and of
-  /// so many grids; for more triangles, or cells of a given width, the host reads the numbers back first.
-  static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
-  static constexpr int grids_without_readback = 4;
+  static constexpr int grids_without_readback = 4;  ///< of so many triangles
 
   /// True if boxes of triangles are kept: a thread that works alone asks them before it reads a triangle, and a
   /// simulation in each step. Where threads work together to read the mesh again takes less time.
@@ -247,14 +258,14 @@ class cell_index {
     }
     auto* const measured = radii_.reserve(space.resource(), 1);
     measure_radii_of(space, spheres, &measured->radii);
-    detail::choose_reaches<S> const kernel{&measured->radii, &measured->reaches, enough,
+    detail::choose_reaches<S> const kernel{&measured->radii, &measured->reaches, wanted.given, enough,
                                            fewest,           wanted.max_count,   anew};
     space.launch(1, kernel);
     return &measured->reaches;
   }
 
   /// Takes memory for up to `max_count` grids. Where nobody knows how many there will be each may have half the
-  /// entries.
+  /// entries, but two together all of theirs.
   template <class Space>
   void plan_memory(Space& space, int max_count, bool may_be_fewer, std::size_t spheres) {
     auto const* const boxes = measures_.boxes();
@@ -266,7 +277,9 @@ class cell_index {
     // what is held for another number of cells would come on top of what the budget was planned for
     if (limits_.memory_budget != 0 && grids_.cells != cells) lists_.release();
     grids_.cells = cells;
-    grids_.entry_limit = may_be_fewer && plan.grids > 1 ? plan.entries / 2 : plan.entries;
+    auto const grids = static_cast<std::size_t>(plan.grids);
+    grids_.entry_limit =
+        may_be_fewer ? plan.entries / grids * max<std::size_t>(grids / 2, min<std::size_t>(grids, 2)) : plan.entries;
     grids_.table_bits = plan.table_bits;
     grids_.count = plan.grids;
     grids_.memory.reserve(space.resource(), max_grids);

@@ -25,11 +25,11 @@ struct bucket_ref : mesh_lookup<S> {
 
   static constexpr std::int8_t no_candidates = candidate_cursor::ended, no_grid = -2;  ///< in place of a grid's number
 
-  /// Without the grids that are not in use, and without any if their entries have found no room.
+  /// Without the grids that are not in use, and without any if they have no entries, or these have found no room.
   COLLIDE_HD bucket_ref opened() const {
     bucket_ref open = *this;
     while (open.grid_count > 1 && grids[open.grid_count - 1].reach < 0) --open.grid_count;
-    if (grid_count > 0 && *total > capacity) open.grid_count = 0;
+    if (grid_count > 0 && (lists == nullptr || *total > capacity)) open.grid_count = 0;
     return open;
   }
 

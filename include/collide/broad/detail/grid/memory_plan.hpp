@@ -55,7 +55,9 @@ struct memory_plan {
       if (min_entries > max_entries) continue;
       // the few spheres that use many triangles have, in the end, many pairs; the entries of several grids are counted
       // before there is memory for them
-      std::size_t const chosen = (spheres < triangles ? 48 : 16) * triangles + spheres / (wanted > 1 ? 2 : 4) + 4096,
+      bool const are_few = std::max(triangles, spheres) < 4096;
+      std::size_t const of_triangle = are_few ? 12 : (spheres < triangles ? 48 : 16);
+      std::size_t const chosen = of_triangle * triangles + spheres / (wanted > 1 ? 2 : 4) + (are_few ? 512 : 4096),
                         given = 1024 * triangles + (std::size_t{1} << 21);
       std::size_t const limit = std::min((width_is_given ? given : chosen) * grids, max_entries);
       for (std::uint32_t bits = max_bits; bits >= 6; --bits) {

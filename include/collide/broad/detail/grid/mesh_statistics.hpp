@@ -159,14 +159,15 @@ struct grid_reaches {
 };
 
 /// Kernel functor of one block: chooses how far the grids of spheres of many radii reach. The reaches are a factor of 4
-/// or more apart, down to one that is at most `enough`; the first is for all spheres, each of the others for more than
-/// `fewest` spheres of the histogram. Of no spheres there is one of 0.
+/// or more apart, down to one that is at most `enough`; the first is for all spheres, or for those up to the radius
+/// that is given, each of the others for more than `fewest` spheres of the histogram. Of no spheres there is one of 0.
 template <class S>
 struct choose_reaches {
   static constexpr int items = 1;
 
   size_histogram const* radii;
   grid_reaches<S>* chosen;  ///< in: those that are there, unless all are made anew
+  S given;                  ///< negative: none
   S enough;
   std::uint64_t fewest;
   int max_count;  ///< reaches
@@ -196,7 +197,12 @@ struct choose_reaches {
     for (int b = first; b <= last; ++b) left += counts[b];
     grid_reaches<S> wanted{{}, 0, makes_anew};
     int n = 0, next = last;
-    if (last < first) wanted.reaches[n++] = 0;
+    if (given >= 0) {
+      wanted.reaches[n++] = given;
+      next = static_cast<int>(size_bin(given)) - bins_per_factor_4;
+    } else if (last < first) {
+      wanted.reaches[n++] = 0;
+    }
     COLLIDE_NO_UNROLL
     for (int b = last; b >= first && n < max_count; left -= counts[b--]) {
       if (b > next || counts[b] == 0 || (n != 0 && left <= fewest)) continue;

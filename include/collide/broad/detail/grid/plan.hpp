@@ -53,24 +53,36 @@ struct level_cost {
   float reach;
   float path;  ///< how far a sphere moves
   share_of_pairs const& share;
-  float sides[3];   ///< of the grid
-  float max_cells;  ///< of two levels; where there are more they wrap
+  float sides[3];    ///< of the grid
+  float max_cells;   ///< of two levels; where there are more they wrap
+  bool for_queries;  ///< of which there are many: cells that wrap cost each of them
 
   COLLIDE_HD_INLINE float operator()(triangle_sums const& t, float width) const {
-    float const pairs = spheres * t.count * share(reach + 0.5f * width, t.mean_extent()), cells = path / width;
-    float const thin = 1 - share.full();
+    float const cells = path / width, thin = 1 - share.full();
+    float pairs = spheres * t.count * share(reach + 0.5f * width, t.mean_extent());
+    if (for_queries && number_of_cells(width) > 2 * max_cells) pairs += spheres * t.entries(width, reach) / max_cells;
     return (costs.entry_ns + costs.thin_entry_ns * thin) * t.entries(width, reach) +
            costs.serial_ns * t.largest().entries(width, reach) +
            (costs.candidate_ns + costs.thin_ns * thin) * pairs * (1 + cells) + costs.step_ns * spheres * cells;
   }
 
+  /// The cost if its spheres look into the cells of a grid that reaches farther, which are about twice as wide as that.
+  COLLIDE_HD_INLINE float without(triangle_sums const& t, float wider_reach) const {
+    return costs.candidate_ns * spheres * t.count * share(2 * wider_reach, t.mean_extent());
+  }
+
   /// False if long thin triangles go around what wraps more than once: they are not cut then (triangle_cells.hpp), and
   /// in nearly all cells.
   COLLIDE_HD_INLINE bool cuts(triangle_sums const& t, float width) const {
+    float const box = (t.widest + 2 * reach) / width;
+    return share.full() > 0.5f || number_of_cells(width) <= max_cells || box * box * box < max_cells;
+  }
+
+ private:
+  COLLIDE_HD_INLINE float number_of_cells(float width) const {
     float cells = 1;
     for (float const side : sides) cells *= side / width + 1;
-    float const box = (t.widest + 2 * reach) / width;
-    return share.full() > 0.5f || cells <= max_cells || box * box * box < max_cells;
+    return cells;
   }
 };
 
@@ -183,12 +195,17 @@ struct plan_grid {
     measure_distances(block, s);
     weigh(block, s);
     block.for_each_thread([&](int thread_rank) {
-      if (thread_rank == 0) set_levels(g, s.planned, s.chosen, s.extent, block.index());
+      if (thread_rank != 0) return;
+      if (s.chosen.width != no_cells) return set_levels(g, s.planned, s.chosen, s.extent, block.index());
+      s.planned.reach = -1;
+      s.planned.levels = 0;
+      set_empty(g, s.planned);
     });
   }
 
  private:
   static constexpr float unlimited = std::numeric_limits<float>::max();
+  static constexpr float no_cells = 0;  ///< in place of a width: the grid costs more than it saves
 
   template <class Block>
   COLLIDE_HD_INLINE void empty_cells(Block& block) const {
@@ -319,7 +336,8 @@ struct plan_grid {
                       s.distances.mean_path(),
                       share,
                       {},
-                      0.5f * exp2f(static_cast<float>(request.table_bits))};
+                      0.5f * exp2f(static_cast<float>(request.table_bits)),
+                      Block::num_threads > 1 && request.spheres > 1.5f * static_cast<float>(spheres.size())};
       for (int k = 0; k < 3; ++k)
         cost.sides[k] = static_cast<float>((s.planned.upper[k] - s.planned.lower[k]) / s.extent);
       float const entry_limit = request.entry_limit / static_cast<float>(request.used());
@@ -333,6 +351,11 @@ struct plan_grid {
         cell_choice const next =
             i < widths ? of_width(all, width_at(i), entry_limit, cost) : of_split(s, i - widths, entry_limit / 2, cost);
         best[thread_rank] = cell_choice::cheaper{}(best[thread_rank], next);
+      }
+      if (Block::num_threads > 1 && thread_rank == 0 && block.index() > 0) {
+        // nobody knows yet which of the others there will be
+        cell_choice const none{cost.without(all, static_cast<float>(request.reach_of(0) / s.extent)), no_cells, 0, 0};
+        best[thread_rank] = cell_choice::cheaper{}(best[thread_rank], none);
       }
     });
     cell_choice const chosen = block.reduce(s.reduction, best, cell_choice::cheaper{});

@@ -70,37 +70,59 @@ struct update_copies : update_and_check_skin<S, Effects> {
   }
 };
 
-/// Kernel functor of `for_each_if_nonzero` over the table: empties it.
+/// Kernel functor of `for_each_if_nonzero` over the table, which it empties, and over places in the old order: keeps
+/// what contacts remember, by numbers.
 template <class S, class Effects>
 struct clear_cells {
-  sorted_particles<S, Effects> order;
+  using ordered = sorted_particles<S, Effects>;
+  ordered order;
+  std::size_t in_table;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    order.ends[i] = 0;
-    if (i == 0) {
-      auto& h = *order.header;
-      h.count = h.in_runs = h.kept = 0;
-      if constexpr (sorted_particles<S, Effects>::on_ranks) h.at_border = 0;
+    if (i < in_table) order.ends[i] = 0;
+    if constexpr (ordered::has_memory) {
+      if (i < order.header->count) keep(static_cast<std::uint32_t>(i));
     }
+  }
+
+ private:
+  COLLIDE_HD_INLINE void keep(std::uint32_t place) const {
+    auto const& m = order.memory;
+    std::uint32_t touching = 0;
+    order.for_each_remembered(place, [&](std::uint32_t, std::size_t) { ++touching; });
+    std::uint32_t const first = fetch_add(&order.header->kept, touching);
+    m.kept_of[order.numbers[place]] = {first, touching};
+    std::uint32_t n = first;
+    order.for_each_remembered(place, [&](std::uint32_t other, std::size_t item) {
+      kept_contact<S, typename ordered::remembered>& kept = m.kept[n++];
+      kept.record.set(m.slot(item).values());
+      kept.other = order.number_at(other);
+    });
   }
 };
 
 /// Kernel functor of `for_each_if_nonzero` over particles: counts them into cells, or, once blocks have their share of
-/// the order, fills in their numbers.
+/// the order, copies them there.
 template <class S, class Effects, bool Fill>
 struct count_or_scatter {
   particle_state<S, typename Effects::all> state;
   sorted_particles<S, Effects> order;
 
+  using ordered = sorted_particles<S, Effects>;
+
   COLLIDE_HD void operator()(std::size_t i) const {
+    if (!Fill && i == 0) begin();
     using placing = union_of<columns<position>, intersection_of<columns<alive, radius>, typename Effects::all>>;
     particle<S, placing> p;
     state.load(p, i);
     if constexpr (contains<placing, alive>) {
       if constexpr (Fill) order.known[i] = p[alive{}];
       if (p[alive{}] == 0) {
-        if constexpr (sorted_particles<S, Effects>::has_memory) order.memory.kept_of[i].count = 0;
-        if constexpr (Fill) order.keep_place(i, order.overflow_mark);
+        if constexpr (ordered::has_memory) order.memory.kept_of[i].count = 0;
+        if constexpr (Fill) {
+          order.keep_place(i, order.overflow_mark);
+          forget_kicks<Effects>(state, i);
+        }
         return;
       }
     }
@@ -112,41 +134,17 @@ struct count_or_scatter {
     if constexpr (Fill) {
       order.numbers[slot] = static_cast<id>(i);
       order.keep_place(i, slot);
+      typename ordered::interaction whole;
+      state.load(whole, i);
+      order.references[slot].set(order.store(slot, whole));
     }
   }
-};
 
-/// Kernel functor of `for_each_if_nonzero` over places in the order: copies particles there.
-template <class S, class Effects>
-struct gather {
-  particle_state<S, typename Effects::all> state;
-  sorted_particles<S, Effects> order;
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    if (i >= order.header->count) return;
-    typename sorted_particles<S, Effects>::interaction p;
-    state.load(p, order.numbers[i]);
-    order.references[i].set(order.store(i, p));
-  }
-};
-
-/// Kernel functor of `for_each_if_nonzero` over places in the old order: keeps what contacts remember, by numbers.
-template <class S, class Effects>
-struct keep_contacts {
-  sorted_particles<S, Effects> order;
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    if (i >= order.header->count) return;
-    auto const place = static_cast<std::uint32_t>(i);
-    auto const& m = order.memory;
-    std::uint32_t touching = 0;
-    order.for_each_remembered(place, [&](std::uint32_t, std::size_t) { ++touching; });
-    std::uint32_t const first = fetch_add(&order.header->kept, touching);
-    m.kept_of[order.numbers[i]] = {first, touching};
-    std::uint32_t n = first;
-    order.for_each_remembered(place, [&](std::uint32_t other, std::size_t item) {
-      m.kept[n++] = {m.records[item], order.number_at(other)};
-    });
+ private:
+  COLLIDE_HD_INLINE void begin() const {
+    auto& h = *order.header;
+    h.count = h.in_runs = h.kept = 0;
+    if constexpr (ordered::on_ranks) h.at_border = 0;
   }
 };
 
@@ -190,7 +188,7 @@ struct build_lists {
     if constexpr (ordered::has_memory) {
       std::uint32_t touching = 0;
       restore(i, near.places, near.size, [&](std::uint32_t n, auto const& record) {
-        order.memory.records[n * order.capacity + i] = record;
+        order.memory.slot(n * order.capacity + i).set(record.values());
         touching |= 1u << n;
       });
       order.memory.touching[i] = touching;
@@ -237,7 +235,7 @@ struct build_lists {
       auto const& m = order.memory;
       for (std::uint32_t n = 0; n < size; ++n) m.run_touching[first + n] = 0;
       restore(i, run, size, [&](std::uint32_t n, auto const& record) {
-        m.records[order.run_item(first + n)] = record;
+        m.slot(order.run_item(first + n)).set(record.values());
         m.run_touching[first + n] = 1;
       });
     }

@@ -58,7 +58,7 @@ struct pair_interaction {
 
   /// A meeting with what the contact remembers in `record`, if it `was` there. True if there is something to remember.
   template <class Record>
-  COLLIDE_HD_INLINE bool interact(pair_state& p, std::uint32_t place, bool overlap, bool was, Record& record) const {
+  COLLIDE_HD_INLINE bool interact(pair_state& p, std::uint32_t place, bool overlap, bool was, Record record) const {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_awake = !is_inactive(other), is_other = overlap && is_awake;
     bool goes_on = was;
@@ -82,14 +82,17 @@ struct pair_interaction {
     return goes_on;
   }
 
+  /// Keeps what others do to a particle: nothing, if none is there.
   COLLIDE_HD_INLINE void store(pair_state& p) const {
-    if (!p.met) return;
-    if (p.self[position{}].x() == std::numeric_limits<S>::max()) return;  // it is gone: what is known of it is old
+    // of one that is gone, what is known is old
+    bool const met = p.met && p.self[position{}].x() != std::numeric_limits<S>::max();
     bool is_asleep = false;
     if constexpr (Effects::keeps_support) is_asleep = is_inactive(p.self) && is_inactive(p.changed);
-    if (what == meeting::in_step && !is_asleep)
+    if (met && what == meeting::in_step && !is_asleep)
       state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
-    if constexpr (Effects::keeps_pair_forces) {
+    if (!met) {
+      forget_kicks<Effects>(state, p.self.number);
+    } else if constexpr (Effects::keeps_pair_forces) {
       particle<S, typename Effects::interaction_kicks> kicks;
       kicks[pair_acceleration{}] = (p.changed[velocity{}] - p.self[velocity{}]) * (1 / dt);
       if constexpr (Effects::keeps_pair_torques) {
@@ -177,7 +180,7 @@ struct interact_listed : pair_interaction<S, Effects> {
 #if !defined(__CUDA_ARCH__)
     auto const& places = this->order;
     for (std::uint32_t left = places.memory.touching[i]; left != 0; left &= left - 1) {
-      __builtin_prefetch(places.memory.records + std::size_t(__builtin_ctz(left)) * places.capacity + i, 1);
+      __builtin_prefetch(places.memory.slot(std::size_t(__builtin_ctz(left)) * places.capacity + i).first, 1);
     }
 #endif
   }
@@ -188,7 +191,7 @@ struct interact_listed : pair_interaction<S, Effects> {
       std::uint32_t const before = places.memory.touching[self];
       std::uint32_t touching = 0;
       for_each_listed(self, before, [&](std::uint32_t place, bool overlap, std::uint32_t k) {
-        auto& record = places.memory.records[k * places.capacity + self];
+        auto const record = places.memory.slot(k * places.capacity + self);
         if (this->interact(p, place, overlap, (before >> k & 1) != 0, record)) touching |= 1u << k;
       });
       if ((touching | before) != 0) places.memory.touching[self] = touching;
@@ -205,7 +208,7 @@ struct interact_listed : pair_interaction<S, Effects> {
       std::uint8_t* const touching = places.memory.run_touching + first;
       auto const was = [&](std::uint32_t k) { return touching[k] != 0; };
       for_each_near(self, place_of, was, [&](std::uint32_t place, bool overlap, std::uint32_t k) {
-        auto& record = places.memory.records[places.run_item(first + k)];
+        auto const record = places.memory.slot(places.run_item(first + k));
         touching[k] = this->interact(p, place, overlap, was(k), record);
       });
     } else {
@@ -228,7 +231,7 @@ struct interact_listed : pair_interaction<S, Effects> {
       COLLIDE_NO_UNROLL
       for (std::uint32_t k = 0; k < near.size; ++k) {
         if constexpr (ordered::has_memory) {
-          contact_record<S, typename Effects::remembered> forgotten;
+          contact_record<S, typename Effects::remembered> forgotten{};
           this->interact(p, near.places[k], true, false, forgotten);
         } else {
           this->interact(p, near.places[k]);

@@ -71,6 +71,17 @@ struct list_state_on_ranks : list_state {
   std::uint32_t at_border;  ///< how many particles have copies of other ranks' on their list
 };
 
+/// Forgets what others do to a particle, where that is kept.
+template <class Effects, class S, class List>
+COLLIDE_HD_INLINE void forget_kicks([[maybe_unused]] particle_state<S, List> const& state,
+                                    [[maybe_unused]] std::size_t i) {
+  if constexpr (Effects::keeps_pair_forces) {
+    particle<S, typename Effects::interaction_kicks> none;
+    set_initial_values(none);
+    state.store(none, i, typename Effects::interaction_kicks{});
+  }
+}
+
 /// The particles in the order of the grid, with all that they must know of each other.
 template <class S, class Effects>
 struct sorted_particles {
@@ -154,7 +165,7 @@ struct sorted_particles {
     p.name = number_of_place(i);
     packed_sphere<S> const s = spheres[i];
     p[position{}] = vec3<S>(s.x, s.y, s.z);
-    p.the_radius = s.radius;
+    p.the_radius = sizes_differ ? s.radius : copies.common_radius;  // what follows from it is computed once
     if constexpr (contains<typename Effects::interaction, radius>) p[radius{}] = s.radius;
     copies.load(p, i, copied{});
     return p;

@@ -32,12 +32,15 @@ struct spatial_hash {
 
   COLLIDE_HD_INLINE cell of(S x, S y, S z) const { return {coordinate(x), coordinate(y), coordinate(z)}; }
 
-  /// Place of a cell in the table.
+  /// Place of a cell in the table. Blocks of 16 x 16 x 16 cells are together, along a curve: so most neighbours of a
+  /// particle are near it in memory.
   COLLIDE_HD_INLINE std::uint32_t number(cell c) const {
     auto const u = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
-    std::uint32_t const block = u(c.x >> 4) * 73856093u ^ u(c.y >> 1) * 19349663u ^ u(c.z >> 1) * 83492791u;
-    std::uint32_t const mixed = (block ^ block >> 15) * 0x2c1b3c6du;
-    return ((mixed ^ mixed >> 13) & mask) * stride + ((u(c.z) & 1) << 5 | (u(c.y) & 1) << 4 | (u(c.x) & 15));
+    auto const apart = [](std::uint32_t v) { return (v & 2) >> 1 | (v & 4) | (v & 8) << 1; };
+    std::uint32_t const cube = u(c.x >> 4) * 73856093u ^ u(c.y >> 4) * 19349663u ^ u(c.z >> 4) * 83492791u;
+    std::uint32_t const mixed = (cube ^ cube >> 15) * 0x2c1b3c6du, spread = mixed ^ mixed >> 13;
+    std::uint32_t const block = (spread << 6 | spread >> 26) ^ apart(u(c.y)) ^ apart(u(c.z)) << 1;
+    return (block & mask) * stride + ((u(c.z) & 1) << 5 | (u(c.y) & 1) << 4 | (u(c.x) & 15));
   }
 
   /// The place of the block of a cell along a curve, on which near blocks are near: G. M. Morton, "A computer oriented

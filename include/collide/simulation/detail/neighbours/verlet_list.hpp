@@ -11,10 +11,11 @@
 /// largest is more than twice as large as the small ones, which are up to twice as large as the smallest, these are in
 /// a second grid of narrower cells, so that they do not pay for it: each looks into both grids, and a larger one into
 /// all cells of the small ones that it reaches (C. Ericson, "Real-Time Collision Detection", 2005, 7.2). Cells lie in a
-/// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
-/// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
-/// particles, and each particle looks into the 27 cells around it, in a box that repeats also around its images. What
-/// has too many neighbours for its list does so in each step.
+/// table of fixed size: cubes of 16 x 16 x 16 cells are spread over it by a hash function, so that any scene fits; in
+/// these, blocks of 16 x 2 x 2 cells follow a curve, so that near cells are near in memory. Particles are counted into
+/// the cells, each block takes as much of the order as it has particles, and each particle looks into the 27 cells
+/// around it, in a box that repeats also around its images. What has too many neighbours for its list does so in each
+/// step.
 ///
 /// Distances must be such that their squares neither overflow nor vanish: with floats, radii from 1e-17 to 1e18.
 ///
@@ -66,7 +67,7 @@ class verlet_list {
     if constexpr (order::on_ranks) is_at_border_.reserve(resource, n);
     lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
-    contacts_.reserve(resource, n, order::listed, runs_.capacity());
+    contacts_.reserve(resource, n, order::listed, runs_.capacity(), !Space::host_accessible);
     if constexpr (Once) pairs_.reserve(resource, n);
   }
 
@@ -174,11 +175,11 @@ class verlet_list {
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
     if constexpr (Once) are_new_ = *rebuild != 0;
-    if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
     if constexpr (Once) {
       if (*rebuild != 0) pairs_.keep(o);
     }
-    for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
+    std::size_t const in_table = blocks_ * cells::stride;
+    for_each_if_nonzero(space, rebuild, std::max(n, in_table), clear_cells<S, Effects>{o, in_table});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
     if constexpr (works_alone<Space>) {
       if (*rebuild != 0) scan_along_curve(o);
@@ -186,7 +187,6 @@ class verlet_list {
       for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
     }
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
-    for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
     if constexpr (Once || (order::has_memory && Space::host_accessible)) {
       if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
@@ -226,8 +226,6 @@ class verlet_list {
                    detail::interact_inside<S, Effects>{{{state, order_of(state), effects, dt, meeting::in_step}}});
     inside_is_done_ = true;
   }
-
-  bool inside_is_done() const { return inside_is_done_; }
 
   /// After `renew`: one pass of `on_pair_contact` over all pairs.
   template <class Space>
@@ -279,7 +277,7 @@ class verlet_list {
       others = copied(space, memory_.state(all, all, S(0)).at(global_number{}), header.count);
     auto const lists = copied(space, lists_.data(), order::listed * all),
                runs = copied(space, runs_.data(), runs_.capacity());
-    auto const memory = contacts_.template copied<order::listed>(space, all, header.count, runs.size());
+    auto const memory = contacts_.copied(space, header.count, runs.size());
     std::vector<std::uint32_t> place_of(all, order::overflow_mark);
     for (std::uint32_t i = 0; i < header.count; ++i) place_of[numbers[i]] = i;
     for (std::size_t number = 0; number < n; ++number) {

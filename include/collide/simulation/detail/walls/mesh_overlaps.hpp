@@ -65,9 +65,18 @@ COLLIDE_HD_INLINE sphere<S> seen_from([[maybe_unused]] Triangles const& open, [[
   }
 }
 
-/// f(triangle, frame) for each triangle whose box a sphere meets, until that is true; then returns true.
+/// The body of a triangle: 0 of what rests.
+template <class Triangles>
+COLLIDE_HD_INLINE int frame_in([[maybe_unused]] Triangles const& open, [[maybe_unused]] id triangle) {
+  if constexpr (has_moving_mesh<Triangles>) return open.mesh.frame_of(triangle);
+  return 0;
+}
+
+/// f(triangle, frame) for each triangle whose box a sphere meets, some of them several times; or for one of `shares`
+/// shares of these.
 template <class Triangles, class S, class F>
-COLLIDE_HD_INLINE bool meets_box(Triangles const& open, sphere<S> const& shape, F const& f) {
+COLLIDE_HD_INLINE void for_each_box_met(Triangles const& open, sphere<S> const& shape, std::uint32_t share,
+                                        std::uint32_t shares, F const& f) {
   constexpr std::uint32_t together = 4, all = 1u << 30;
   auto cursor = open.begin(shape);
   candidate_range range{};
@@ -83,27 +92,44 @@ COLLIDE_HD_INLINE bool meets_box(Triangles const& open, sphere<S> const& shape, 
     if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
     sphere<S> const seen = seen_from(open, frame, shape);
     COLLIDE_NO_UNROLL
-    for (std::uint32_t k = 0; k < range.count; k += together) {
+    for (std::uint32_t first = share; first < range.count; first += together * shares) {
       id triangles[together];
       bool overlaps[together];
       for (std::uint32_t j = 0; j < together; ++j) {  // all are on their way at once
-        cell_item const e = range.at(min(k + j, range.count - 1));
+        std::uint32_t const k = first + j * shares;
+        cell_item const e = range.at(min(k, range.count - 1));
         triangles[j] = e.triangle;
-        overlaps[j] = k + j < range.count && range.passes_coverage(e) &&
+        overlaps[j] = k < range.count && range.passes_coverage(e) &&
                       triangle_aabb_of(open.mesh[e.triangle]).overlaps(seen.centre, seen.radius);
       }
       COLLIDE_NO_UNROLL
       for (std::uint32_t j = 0; j < together; ++j)
-        if (overlaps[j] && f(triangles[j], frame)) return true;
+        if (overlaps[j] && frame_in(open, triangles[j]) == frame) f(triangles[j], frame);
     }
   }
-  return false;
 }
+
+/// A particle that may press on the mesh: it meets the boxes of triangles.
+struct pressing_particle {
+  static constexpr std::uint32_t capacity = 6;
+
+  id number;
+  std::uint32_t met;  ///< how many; if there is no room for these, they are to be looked for again
+  id triangles[capacity];
+
+  COLLIDE_HD_INLINE void add(id triangle) {
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; k < min(met, capacity); ++k)
+      if (triangles[k] == triangle) return;
+    if (met < capacity) triangles[met] = triangle;
+    ++met;
+  }
+};
 
 /// Which particles may press on the mesh, in any order.
 struct pressing_list {
   std::uint32_t* count;
-  id* numbers;
+  pressing_particle* particles;
 };
 
 /// Forgets what the mesh gave to a particle.
@@ -120,8 +146,8 @@ COLLIDE_HD_INLINE bool has_no_mesh_kicks([[maybe_unused]] State const& state, [[
   return true;
 }
 
-/// Kernel functor of `for_each` over particles: lists those that meet the box of a triangle, or are less than `margin`
-/// away from it. These are few, and much work.
+/// Kernel functor of `for_each` over `lanes` threads for each particle, side by side: lists those that meet the box of
+/// a triangle, or are less than `margin` away from it. These are few, and much work.
 template <class S, class Effects, class Triangles, class Memory>
 struct list_pressing {
   particle_state<S, typename Effects::all> state;
@@ -130,11 +156,24 @@ struct list_pressing {
   Memory memory;
   pressing_list found;
   meeting what;
+  std::uint32_t lanes;  ///< a power of two, at most 32
   S margin;
 
-  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
+  /// As many lanes as keep a large device busy.
+  template <class Space>
+  static std::uint32_t lanes_for(std::size_t particles) {
+    std::uint32_t lanes = 1;
+    if (!Space::host_accessible)
+      while (lanes < 8 && 2 * lanes * particles <= std::size_t{1} << 18) lanes *= 2;
+    return lanes;
+  }
+
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t thread) const {
+    std::size_t const i = thread / lanes;
+    auto const share = static_cast<std::uint32_t>(thread % lanes), shares = COLLIDE_ON_DEVICE(lanes, 1u);
+    if (share >= shares) return;
     if (what == meeting::of_woken && !(is_just_woken(state, i) && has_no_mesh_kicks(state, i))) return;
-    forget_mesh_kicks(state, i);
+    if (share == 0) forget_mesh_kicks(state, i);
     if constexpr (Effects::any_inactive) {
       particle<S, typename Effects::inactive_reads> p;
       state.load(p, i);
@@ -143,17 +182,51 @@ struct list_pressing {
     particle<S, union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>> p;
     state.load(p, i);
     sphere<S> const shape{p[position{}], reach_of<Effects>(p.the_radius) + margin};
-    if (is_finite(shape.centre) && may_press(shape)) {
-      found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
-    } else if constexpr (Effects::remembered::size != 0) {
-      if (what == meeting::in_step && memory.counts[i] != 0) memory.counts[i] = 0;
+    pressing_particle mine{static_cast<id>(i), 0, {}};
+    if (is_finite(shape.centre)) find(shape, share, shares, mine);
+    std::uint32_t met = mine.met, before = 0;
+    with_lanes([&](auto const& shuffle_up, auto const& shuffle) {
+      for (std::uint32_t apart = 1; apart < lanes; apart *= 2) {
+        std::uint32_t const others = shuffle_up(met, apart);
+        if (share >= apart) met += others;
+      }
+      before = met - mine.met;
+      met = shuffle(met, lanes - 1);
+    });
+    if (met == 0) {
+      if constexpr (Effects::remembered::size != 0) {
+        if (share == 0 && what == meeting::in_step && memory.counts[i] != 0) memory.counts[i] = 0;
+      }
+      return;
     }
+    std::uint32_t slot = 0;
+    if (share == 0) slot = fetch_add(found.count, 1u);
+    with_lanes([&](auto const&, auto const& shuffle) { slot = shuffle(slot, 0); });
+    pressing_particle& to = found.particles[slot];
+    if (share == 0) to.number = mine.number, to.met = met;
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; k < mine.met && before + k < to.capacity; ++k)
+      to.triangles[before + k] = mine.triangles[k];
   }
 
  private:
-  COLLIDE_HD_INLINE bool may_press(sphere<S> const& shape) const {
+  COLLIDE_HD_INLINE void find(sphere<S> const& shape, std::uint32_t share, std::uint32_t shares,
+                              pressing_particle& mine) const {
     Triangles const open = triangles.opened();
-    return !open.empty(shape) && meets_box(open, shape, [](id, int) { return true; });
+    if (open.empty(shape)) return;
+    for_each_box_met(open, shape, share, shares, [&](id triangle, int) { mine.add(triangle); });
+  }
+
+  /// Calls f(value of a lane so far before, value of lane k) where there are several lanes.
+  template <class F>
+  COLLIDE_HD_INLINE void with_lanes([[maybe_unused]] F const& f) const {
+#if defined(__CUDA_ARCH__)
+    if (lanes == 1) return;
+    unsigned const mask = ((1u << lanes) - 1) << (threadIdx.x & 31 & ~(lanes - 1));
+    int const width = static_cast<int>(lanes);
+    f([&](std::uint32_t x, std::uint32_t apart) { return __shfl_up_sync(mask, x, apart, width); },
+      [&](std::uint32_t x, std::uint32_t k) { return __shfl_sync(mask, x, static_cast<int>(k), width); });
+#endif
   }
 };
 
@@ -176,9 +249,7 @@ inline overlap_item* overlap_items_of_thread(std::size_t n) {
 }
 #endif
 
-/// Kernel functor of `for_each` over at least as many as there are particles: those on the list press on the mesh.
-/// Where these are so few that they do not fill a device of `threads`, they are apart: threads that run together wait
-/// for each other.
+/// Kernel functor of `for_each` over as many as there are particles: those on the list press on the mesh.
 template <class S, class Effects, class Triangles, class Memory>
 struct press_on_mesh {
   using effects_type = Effects;
@@ -194,13 +265,9 @@ struct press_on_mesh {
   overlap_pool pool;
   S dt;
   meeting what;
-  std::size_t threads;
 
   COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const {
-    std::size_t const count = *pressing.count;
-    std::size_t apart = 1;
-    while (apart < 32 && 2 * apart * count <= threads) apart *= 2;
-    if (k % apart == 0 && k / apart < count) press_with(pressing.numbers[k / apart]);
+    if (k < *pressing.count) press_with(pressing.particles[k]);
   }
 
  protected:
@@ -208,12 +275,13 @@ struct press_on_mesh {
   using values_type = contact_values<S, remembered>;
   static constexpr int capacity = surface_memory_ref<S, remembered>::max_contacts;
 
-  COLLIDE_HD_INLINE void press_with(std::size_t i) const {
+  COLLIDE_HD_INLINE void press_with(pressing_particle const& one) const {
+    std::size_t const i = one.number;
     S const* const x = state.at(position{}) + 3 * i;
     sphere<S> const shape{{x[0], x[1], x[2]}, state.radius_at(i)};
     Triangles const open = triangles.opened();
     overlap_list near(tolerance_of(shape));
-    if (is_finite(shape.centre)) find(open, shape, near);
+    if (is_finite(shape.centre)) find(open, shape, near, &one);
     forget_mesh_kicks(state, i);
     int before = 0;
     if constexpr (has_memory) before = memory.counts[i];
@@ -229,10 +297,18 @@ struct press_on_mesh {
     return 1e-6 * static_cast<double>(shape.radius) + rounding * static_cast<double>(max_norm(shape.centre));
   }
 
-  /// Lists the triangles that a sphere overlaps, and finds its contacts among them.
-  COLLIDE_HD void find(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
+  /// Lists the triangles that a sphere overlaps, of which the boxes that it meets may be known, and finds its contacts
+  /// among them.
+  COLLIDE_HD void find(Triangles const& open, sphere<S> const& shape, overlap_list& near,
+                       pressing_particle const* known = nullptr) const {
     sphere<S> const wider{shape.centre, reach_of<Effects>(shape.radius)};
-    list_overlaps(open, wider, near);
+    if (known != nullptr && known->met <= known->capacity) {
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t k = 0; k < known->met; ++k)
+        add(open, wider, known->triangles[k], frame_in(open, known->triangles[k]), near);
+    } else {
+      list_overlaps(open, wider, near);
+    }
     if (near.is_full()) {
       if (overlap_item* const items = items_for(near.added)) {
         near.use(items);
@@ -255,43 +331,19 @@ struct press_on_mesh {
 #endif
   }
 
-  /// Triangles whose boxes a sphere meets are kept until there are some: so threads that run together find some each,
-  /// and then ask for the nearest points together.
   COLLIDE_AS_O3 COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
-    boxes_met met;
-    meets_box(open, shape, [&](id triangle, int frame) {
-      if (met.size == met.capacity) add(open, shape, met, near);
-      met.triangles[met.size] = triangle;
-      met.frames[met.size++] = static_cast<std::uint8_t>(frame);
-      return false;
-    });
-    add(open, shape, met, near);
+    for_each_box_met(open, shape, 0, 1, [&](id triangle, int frame) { add(open, shape, triangle, frame, near); });
   }
 
-  struct boxes_met {
-    static constexpr std::uint32_t capacity = 16;
-    std::uint32_t size = 0;
-    id triangles[capacity];
-    std::uint8_t frames[capacity];
-  };
-
-  COLLIDE_HD_INLINE void add(Triangles const& open, sphere<S> const& shape, boxes_met& met, overlap_list& near) const {
-    COLLIDE_NO_UNROLL
-    for (std::uint32_t k = 0; k < met.size; ++k) {
-      id const triangle = met.triangles[k];
-      int const frame = met.frames[k];
-      if constexpr (has_moving_mesh<Triangles>) {
-        if (open.mesh.frame_of(triangle) != frame) continue;
-      }
-      sphere<S> const seen = seen_from(open, frame, shape);
-      // of triangles that are near in their boxes only, such as thin ones that meet in a point, there may be very many
-      if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) continue;
-      nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
-      if (!(n.distance < static_cast<double>(seen.radius))) continue;
-      vec3<double> const nearest = in_world(open, frame, scaled(n.normal, -n.distance));
-      near.add({nearest, n.distance, triangle, static_cast<std::uint8_t>(frame), n.kind, false, false, 0, 0, 0, 0, 0});
-    }
-    met.size = 0;
+  COLLIDE_HD_INLINE void add(Triangles const& open, sphere<S> const& shape, id triangle, int frame,
+                             overlap_list& near) const {
+    sphere<S> const seen = seen_from(open, frame, shape);
+    // of triangles that are near in their boxes only, such as thin ones that meet in a point, there may be very many
+    if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) return;
+    nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
+    if (!(n.distance < static_cast<double>(seen.radius))) return;
+    vec3<double> const nearest = in_world(open, frame, scaled(n.normal, -n.distance));
+    near.add({nearest, n.distance, triangle, static_cast<std::uint8_t>(frame), n.kind, false, false, 0, 0, 0, 0, 0});
   }
 
   /// A triangle relative to the centre of a sphere, along the axes of the world.
