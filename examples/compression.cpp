@@ -90,7 +90,8 @@ int main() {
   double mean = 0;
   for (double const f : forces) mean += f / static_cast<double>(forces.size());
   double density[8] = {};  // of probability, in bins of half the mean
-  for (double const f : forces) density[std::clamp(static_cast<int>(2 * f / mean), 0, 7)] += 2.0 / double(forces.size());
+  for (double const f : forces)
+    density[std::clamp(static_cast<int>(2 * f / mean), 0, 7)] += 2.0 / double(forces.size());
   std::printf("%zu normal forces of %.3f N in the mean, in bins of half of it:", forces.size(), mean);
   for (double const p : density) std::printf(" %.3f", p);
   std::printf("\n");

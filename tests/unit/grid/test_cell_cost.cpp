@@ -56,7 +56,7 @@ TEST_CASE("cell cost: a level costs its entries, its candidates and the steps of
     costs.entry_ns = entry_ns;
     costs.candidate_ns = candidate_ns;
     costs.step_ns = step_ns;
-    return collide::detail::level_cost{costs, 5000, 0.001f, path, share, {1, 1, 1}, 1e9f}(triangles, width);
+    return collide::detail::level_cost{costs, 5000, 0.001f, path, share, {1, 1, 1}, 1e9f, false}(triangles, width);
   };
   for (float width : {0.001f, 0.01f, 0.1f}) {
     CHECK(cost_of(2, 0, 0, 0, width) == doctest::Approx(2 * triangles.entries(width, 0.001f)));

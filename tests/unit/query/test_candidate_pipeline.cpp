@@ -120,7 +120,7 @@ TEST_CASE_TEMPLATE("candidate pipeline: what the filter leaves open goes to a li
     candidate_pipeline<float, collide::karabassi<>, output> const pipeline{
         mesh,
         collide::spheres_xyz(where.data(), n, 0.5f),
-        {{&found, &allocations}, {&counters, later.data(), room}},
+        {{&found, &allocations}, {&counters, later.data(), room, {}}},
         nullptr};
     push_all<Block>(pipeline);
     CHECK(spheres_of(found) == hits);
