@@ -9,7 +9,7 @@ TEST_CASE("reaches: spheres whose radii change have the pairs of all pairs, on t
 }
 
 TEST_CASE("few: spheres of many radii, first and again, on the GPU") {
-  tests::many_radii const scene(50, 1000, 1000);
+  tests::many_radii const scene(100, 3000, 1000);
   tests::check_changing_radii<collide::karabassi<>>(collide::cuda_shared(), scene);
   tests::check_changing_radii<collide::karabassi_swept<>>(collide::cuda_shared(), scene);
 }

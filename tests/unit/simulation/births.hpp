@@ -188,9 +188,11 @@ void check_births_of_what_does_not_meet(Space const& space) {
   auto const there = made.template to_host<collide::alive>();
   CHECK(there == std::vector<std::uint8_t>(50, 1));
   made.template effect<collide::emit>().only_where_free = true;
-  CHECK_THROWS_WITH_AS(made.step(1e-3f),
-                       "collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact",
-                       collide::error);
+  CHECK_THROWS_WITH_AS(
+      made.step(1e-3f),
+      "collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact, "
+      "and does not know clumps",
+      collide::error);
 }
 
 /// A floor, and `n` small grains in a ring above it, which one of radius 0.1 in the middle presses apart.

@@ -229,6 +229,9 @@ struct grain {
   vec3<double> x, v, w{0, 0, 0};
   int place = 0;
 
+  template <class Column>
+  static constexpr bool has = false;  // of a clump
+
   double radius() const { return r; }
   int number() const { return place; }
   vec3<double> const& operator[](collide::position) const { return x; }
