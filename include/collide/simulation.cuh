@@ -335,6 +335,7 @@ class simulation {
 
   /// All data, for code that saves or divides a simulation, as checkpoints and ranks do; no part of the interface.
   state_of_all& internals() { return all_; }
+  /// All data, as above, of a simulation that does not change.
   state_of_all const& internals() const { return all_; }
 
  private:

@@ -77,7 +77,7 @@ struct resolve_deferred {
   template <class Block>
   struct scratch {
     pipeline_storage<Block> pipeline;
-    std::uint32_t found;  ///< how often a thread has found a hit; only rises
+    std::uint32_t found;  ///< how often a thread has found a pair; only rises
   };
 
   template <class Block>
@@ -142,21 +142,29 @@ struct resolve_deferred {
   };
 
   /// Resolves all pairs that the filter leaves uncertain, of every `stride`-th sphere. All threads go on to their next
-  /// hits, then these are written.
+  /// pairs, then these are resolved, each by a call between barriers: ptxas 13.0 keeps counters of a loop in registers
+  /// of the warp, which go on wrongly where threads come back from a call in that loop one after another.
   template <class Block>
   COLLIDE_HD_INLINE void look_again(Block& block, scratch<Block>& s, std::size_t stride) const {
     auto const open = lookup.opened();
     typename Block::template thread_private<progress> state;
     typename Block::template thread_private<pair> own;
-    typename Block::template thread_private<bool> hits;
+    typename Block::template thread_private<bool> are_open, hits;
     block.for_each_thread([&](int thread_rank) {
       start(open, state[thread_rank], block.index() * Block::num_threads + static_cast<std::size_t>(thread_rank));
     });
     for (std::uint32_t before = 0;;) {
-      block.for_each_thread(
-          [&](int thread_rank) { hits[thread_rank] = find_next(open, state[thread_rank], stride, own[thread_rank]); });
+      block.for_each_thread([&](int thread_rank) {
+        are_open[thread_rank] = find_next(open, state[thread_rank], stride, own[thread_rank]);
+      });
+      block.for_each_thread([&](int thread_rank) {
+        hits[thread_rank] = false;
+        if (!are_open[thread_rank]) return;
+        pair const p = own[thread_rank];
+        hits[thread_rank] = resolve<NarrowPhase>(pipeline.mesh[p.triangle], pipeline.spheres[p.sphere]);
+      });
       block.for_each_thread([&](int thread_rank) {  // behind a barrier, as `push_hits` says
-        if (hits[thread_rank]) block.add(s.found, 1);
+        if (are_open[thread_rank]) block.add(s.found, 1);
       });
       pipeline.push_hits(block, s.pipeline, own, hits);
       std::uint32_t const found = block.broadcast(s.found);
@@ -172,7 +180,7 @@ struct resolve_deferred {
     if (sphere < pipeline.spheres.size()) p.at = open.begin(pipeline.spheres[sphere]);
   }
 
-  /// Goes on to the next hit that the first pass has not written; false if there is none.
+  /// Goes on to the next pair that the filter leaves uncertain; false if there is none.
   template <class Open>
   COLLIDE_HD_INLINE bool find_next(Open const& open, progress& p, std::size_t stride, pair& found) const {
     for (; p.number < pipeline.spheres.size(); start(open, p, p.number + stride)) {
@@ -182,7 +190,7 @@ struct resolve_deferred {
         triangle<S> const t = pipeline.mesh[candidate];
         // guard: first-step
         if (filter<NarrowPhase>(t, shape) != verdict::uncertain) continue;
-        if (!resolve<NarrowPhase>(t, shape) || !is_first(open, shape, p, candidate)) continue;
+        if (!is_first(open, shape, p, candidate)) continue;
         found = {static_cast<id>(p.number), candidate};
         return true;
       }
@@ -193,7 +201,7 @@ struct resolve_deferred {
   template <class Open, class Sphere>
   COLLIDE_HD_INLINE bool next_candidate(Open const& open, Sphere const& shape, progress& p, id& number) const {
     constexpr std::uint32_t most = 1u << 30;
-    if (p.k == p.range.count) {
+    if (p.k >= p.range.count) {
       if (!open.next(shape, p.at, most, p.range)) return false;
       p.k = 0;
     }
