@@ -68,8 +68,7 @@ class step_phases {
     if ((!effects_type::any_pair_contact || effects_type::has_clumps) && s_.effects.makes_only_where_free())
       throw error(
           "collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact, and does "
-          "not "
-          "know clumps");
+          "not know clumps");
   }
 
   /// The part of a step before particles meet.
