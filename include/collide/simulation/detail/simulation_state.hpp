@@ -48,9 +48,9 @@ struct simulation_state {
       !is_source<E> && detail::has_begin_step<E, execution_space, particles_type, S> && contains<writes_of<E>, alive>;
   static constexpr bool may_be_made = (may_make<Effect> || ...);
 
-  /// Lists of neighbours tell how long particles that are far from the mesh are.
+  /// Lists of neighbours tell how long particles far from the mesh stay far from it.
   static constexpr bool knows_near_mesh = meets_once && effects_type::overlaps && !effects_type::repeats;
-  /// Particles may lie in the order of the cells of their lists while some steps are made: no effect asks where.
+  /// Particles may lie in the order of the cells of their lists while several steps are made: no effect asks for places.
   static constexpr bool has_cell_order =
       meets_once && !effects_type::has_clumps && !contains<columns, alive> &&
       ((!detail::has_begin_step<Effect, execution_space, particles_type, S> || begins_on_ranks<Effect>)&&...);
