@@ -50,7 +50,7 @@ struct simulation_state {
 
   /// Lists of neighbours tell how long particles far from the mesh stay far from it.
   static constexpr bool knows_near_mesh = meets_once && effects_type::overlaps && !effects_type::repeats;
-  /// Particles may lie in the order of the cells of their lists while several steps are made: no effect asks for places.
+  /// Particles may lie in the order of the cells of their lists while some steps are made: no effect asks for places.
   static constexpr bool has_cell_order =
       meets_once && !effects_type::has_clumps && !contains<columns, alive> &&
       ((!detail::has_begin_step<Effect, execution_space, particles_type, S> || begins_on_ranks<Effect>)&&...);
