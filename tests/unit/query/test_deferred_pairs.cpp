@@ -91,6 +91,29 @@ TEST_CASE_TEMPLATE("undecided: more open pairs than there is room for", S, float
   CHECK(tests::check_all(touching_scene<S>(60, 60), {}).size() == 2400);
 }
 
+TEST_CASE(
+    "undecided: hard cases, whose pairs take all depths of arithmetic side by side, more than there is room for") {
+  auto const rows = oracle::read_hard_cases(TEST_DATA_DIR "/static_f32.csv", true);
+  for (std::size_t first : {2400, 4600}) {
+    tests::scene<float> made;
+    for (std::size_t i = first; i < first + 100; ++i) {
+      made.mesh.add(rows[i].shape);
+      made.spheres.add(rows[i].ball.centre, rows[i].ball.radius);
+    }
+    std::vector<collide::pair> expected;
+    for (auto const& c : tests::compositions<float>("exact")) {
+      CAPTURE(c.name());
+      auto const detector = c.make({});
+      detector->build(made.mesh, tests::mesh_form::soup);
+      detector->place(made.spheres, tests::sphere_form::xyzr);
+      auto const found = detector->pairs(collide::order::canonical);
+      if (expected.empty()) expected = found;
+      CHECK(found == expected);
+    }
+    CHECK(expected.size() > 1024);
+  }
+}
+
 TEST_CASE("undecided: of spheres that move more open pairs than their list has room for, each once") {
   // on their ways along the plane z = 0 they pass several cells that list the same triangles
   auto const made = touching_scene<float>(60, 60);

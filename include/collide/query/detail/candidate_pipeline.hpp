@@ -203,9 +203,12 @@ struct candidate_pipeline {
     } else if (b.hit_count != pipeline_storage<Block, ItemsPerThread>::capacity) {
       b.hits[b.hit_count++] = p;
     } else {
-      write(output.allocate(1), p);
+      write_hit(p);
     }
   }
+
+  /// Writes a hit of a thread at once.
+  COLLIDE_HD_INLINE void write_hit(pair p) const { write(output.allocate(1), p); }
 
   /// Takes the pairs of those threads that have a hit. Called by the whole block. What decides a pair may call a
   /// function, from which the threads of a warp come back one after another; ptxas 13.0 lets some of them run on past a

@@ -75,10 +75,7 @@ struct resolve_deferred {
   }
 
   template <class Block>
-  struct scratch {
-    pipeline_storage<Block> pipeline;
-    std::uint32_t found;  ///< how often a thread has found a pair; only rises
-  };
+  using scratch = pipeline_storage<Block>;
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
@@ -95,16 +92,13 @@ struct resolve_deferred {
       return;
     }
 
-    block.for_each_thread([&](int thread_rank) {
-      pipeline.reset(s.pipeline, thread_rank);
-      if (thread_rank == 0) s.found = 0;
-    });
+    block.for_each_thread([&](int thread_rank) { pipeline.reset(s, thread_rank); });
     if (all_were_stored) {
       resolve_stored(block, s, total);
     } else {
-      look_again(block, s, busy * Block::num_threads);
+      look_again(block, busy * Block::num_threads);
     }
-    pipeline.drain(block, s.pipeline);
+    pipeline.drain(block, s);
     // the last block that had something to do empties the list; those that come later find it so
     block.for_each_thread([&](int thread_rank) {
       if (thread_rank != 0 || fetch_add(&deferred.count->ready, std::uint64_t{1}) + 1 != busy) return;
@@ -128,7 +122,7 @@ struct resolve_deferred {
         hits[thread_rank] =
             resolve<NarrowPhase>(pipeline.mesh[own[thread_rank].triangle], pipeline.spheres[own[thread_rank].sphere]);
       });
-      pipeline.push_hits(block, s.pipeline, own, hits);
+      pipeline.push_hits(block, s, own, hits);
     }
   }
 
@@ -141,36 +135,18 @@ struct resolve_deferred {
     std::uint64_t seen;  ///< how many of all
   };
 
-  /// Resolves all pairs that the filter leaves uncertain, of every `stride`-th sphere. All threads go on to their next
-  /// pairs, then these are resolved, each by a call between barriers: ptxas 13.0 keeps counters of a loop in registers
-  /// of the warp, which go on wrongly where threads come back from a call in that loop one after another.
+  /// Resolves all pairs that the filter leaves uncertain, of every `stride`-th sphere. Each thread writes its own hits:
+  /// ptxas 13.0, not 13.5, lets threads of a warp that return from a call run on alone past a barrier in this loop.
   template <class Block>
-  COLLIDE_HD_INLINE void look_again(Block& block, scratch<Block>& s, std::size_t stride) const {
+  COLLIDE_HD_INLINE void look_again(Block& block, std::size_t stride) const {
     auto const open = lookup.opened();
-    typename Block::template thread_private<progress> state;
-    typename Block::template thread_private<pair> own;
-    typename Block::template thread_private<bool> are_open, hits;
     block.for_each_thread([&](int thread_rank) {
-      start(open, state[thread_rank], block.index() * Block::num_threads + static_cast<std::size_t>(thread_rank));
+      progress at;
+      start(open, at, block.index() * Block::num_threads + static_cast<std::size_t>(thread_rank));
+      for (pair p; find_next(open, at, stride, p);) {
+        if (resolve<NarrowPhase>(pipeline.mesh[p.triangle], pipeline.spheres[p.sphere])) pipeline.write_hit(p);
+      }
     });
-    for (std::uint32_t before = 0;;) {
-      block.for_each_thread([&](int thread_rank) {
-        are_open[thread_rank] = find_next(open, state[thread_rank], stride, own[thread_rank]);
-      });
-      block.for_each_thread([&](int thread_rank) {
-        hits[thread_rank] = false;
-        if (!are_open[thread_rank]) return;
-        pair const p = own[thread_rank];
-        hits[thread_rank] = resolve<NarrowPhase>(pipeline.mesh[p.triangle], pipeline.spheres[p.sphere]);
-      });
-      block.for_each_thread([&](int thread_rank) {  // behind a barrier, as `push_hits` says
-        if (are_open[thread_rank]) block.add(s.found, 1);
-      });
-      pipeline.push_hits(block, s.pipeline, own, hits);
-      std::uint32_t const found = block.broadcast(s.found);
-      if (found == before) break;
-      before = found;
-    }
   }
 
   template <class Open>
