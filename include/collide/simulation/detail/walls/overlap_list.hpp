@@ -89,7 +89,7 @@ class overlap_list {
   static constexpr std::uint32_t capacity = 16;  ///< of the list itself
 
   std::uint32_t size = 0;
-  std::uint32_t added = 0;  ///< with those for which there was no room, and those that were added before
+  std::uint32_t added = 0;  ///< how many calls of `add` there were, those with the same triangle too
 
   /// Points within `tolerance` of each other are one.
   COLLIDE_HD_INLINE explicit overlap_list(double tolerance) : tolerance_{tolerance} {}
@@ -104,11 +104,12 @@ class overlap_list {
       items_[size++] = item;
       return;
     }
+    ++added;
     std::uint32_t at = size;
     COLLIDE_NO_UNROLL
     while (at > 0 && comes_before(item, own_[at - 1])) --at;
     if (at > 0 && own_[at - 1].triangle == item.triangle) return;
-    ++added;
+    is_full_ |= size == capacity;
     if (at == capacity) return;
     if (size < capacity) ++size;
     COLLIDE_NO_UNROLL
@@ -116,9 +117,9 @@ class overlap_list {
     own_[at] = item;
   }
   /// True if there was no room for all.
-  COLLIDE_HD_INLINE bool is_full() const { return added > size; }
+  COLLIDE_HD_INLINE bool is_full() const { return is_full_; }
 
-  /// Begins anew in memory for as many as have been `added`.
+  /// Begins anew in memory for as many triangles as have been `added`.
   COLLIDE_HD_INLINE void use(overlap_item* memory) {
     items_ = memory;
     size = 0;
@@ -318,6 +319,7 @@ class overlap_list {
 
   overlap_item own_[capacity];
   overlap_item* items_ = own_;
+  bool is_full_ = false;
   double tolerance_;
 };
 
