@@ -7,9 +7,10 @@
 namespace collide {
 
 /// Particles vanish where they touch the mesh. They keep their place in memory, with `alive` 0, and cost next to
-/// nothing.
+/// nothing. A clump vanishes as a whole where one of its spheres touches the mesh.
 struct absorb {
   using writes = columns<alive>;
+  static constexpr bool sees_clumps = true;  ///< a clump as a whole
 
   template <class Particle>
   COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {

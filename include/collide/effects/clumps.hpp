@@ -36,7 +36,8 @@ struct clump_inertia {
 /// numbers and do not meet each other. What they meet, and the mesh, acts on them as on spheres of the clump's mass.
 /// Forces are summed in the order of the spheres, those of effects too that know more of a sphere than its motion, such
 /// as `external_forces`. Other effects that accelerate, such as `gravity` and `drag`, do so at the centre of mass. For
-/// `mass_flow` and `absorbing_box` a clump is a sphere of its volume at its centre.
+/// `mass_flow`, `absorbing_box` and `sleep` a clump is a sphere of its volume at its centre; it wakes where one of its
+/// spheres is woken, and vanishes where one meets a mesh that absorbs.
 ///
 /// With `velocity_verlet` and contact by forces, `granular_contact` or `sphere_contact`. Between the half kicks a clump
 /// turns freely by a symplectic splitting into rotations around its principal axes (A. Dullweber, B. Leimkuhler and

@@ -12,11 +12,13 @@ namespace collide {
 /// the mesh changes, and costs the byte that says so. What touches nothing does not fall asleep, however slow it is: a
 /// step in which nothing is touched does not count. The mesh, other particles and `box_walls` are touched; an effect of
 /// your own that holds particles in its `end_step` says so in the column `in_contact`. Name `sleep` behind those, which
-/// stop particles only at the end of a step. One that vanishes in a sink while it is slow wakes nothing.
+/// stop particles only at the end of a step. One that vanishes in a sink while it is slow wakes nothing. A clump
+/// sleeps as a whole, and wakes where one of its spheres does.
 struct sleep {
   using reads = columns<velocity>;
   using optional_reads = columns<angular_velocity, radius>;
   using writes = columns<slow_steps, in_contact>;
+  static constexpr bool sees_clumps = true;  ///< a clump as one sphere
 
   double speed = 0.01;  ///< length per time, not negative: what is slower is slow
   int steps = 50;       ///< 1 to 127: in how many steps a particle is slow before it sleeps

@@ -18,6 +18,8 @@
 #include <collide/effects/integrators.hpp>
 #include <collide/effects/mass_flow.hpp>
 #include <collide/effects/reaction.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/effects/sphere_contact.hpp>
 #include <collide/simulation/checkpoint.hpp>
 #include <collide/simulation/energy.hpp>
 #include <collide/simulation/place_clumps.hpp>
@@ -383,6 +385,178 @@ void check_flow_of_clumps(Space const& space) {
   CHECK(some.centre(0) == gone);
   CHECK(some.centre(9) != gone);
 }
+
+/// Clumps vanish as a whole in the step in which one of their spheres comes to a mesh that absorbs, or the next to it;
+/// what flows through a surface above it is counted once. A scene without a sink says when.
+template <class Space>
+void check_sink_of_clumps(Space const& space) {
+  using collide::sphere_contact;
+  auto const contact = sphere_contact::from_restitution(0.5, 0.01, 0.1, 1000);
+  world<double> w;
+  add_floor(w, 9, 2);
+  collide::flow_sums sums(space, 1e-9);
+  auto const through = sums.through({0, 0, 0.9}, {0, 0, -1}, collide::one_density{1000});
+  clumps_in<Space, double, gravity, sphere_contact, collide::absorb, collide::polydisperse, collide::mass_flow<>> some(
+      space, w, gravity{}, contact, {}, {}, through);
+  clumps_in<Space, double, gravity, sphere_contact, collide::polydisperse> free(space, {}, gravity{}, contact, {});
+  std::vector<placed_clump> all;
+  for (int i = 0; i < 6; ++i) {
+    all.push_back(clump_at(3 * (i % 3) - 3, 0, 1.5 + 2 * (i / 3)));
+    for (int k = 0; k < 3; ++k) all.back().moving.angular[k] = std::sin(5 * i + k) * 3;
+  }
+  collide::set_clumps(some.made, {potato()}, all);
+  collide::set_clumps(free.made, {potato()}, all);
+  std::vector<int> touched(6, -1), gone(6, -1);
+  for (int step = 0; step < 4500; ++step) {
+    some.made.step(2e-4);
+    free.made.step(2e-4);
+    auto const there = some.made.template to_host<collide::alive>();
+    auto const x = free.made.template to_host<position>(), r = free.made.template to_host<collide::radius>();
+    for (std::size_t i = 0; i < 18; ++i) {
+      if (touched[i / 3] < 0 && x[3 * i + 2] < r[i]) touched[i / 3] = step;
+      if (gone[i / 3] < 0 && there[i] == 0) gone[i / 3] = step;
+      CHECK(int(there[i]) == int(gone[i / 3] < 0));
+    }
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK(touched[i] > 0);
+    CHECK(std::abs(gone[i] - touched[i]) <= 1);
+  }
+  CHECK(sums.read(space).particles == 6);
+  CHECK(sums.read(space).mass == doctest::Approx(6 * 1000 * potato().volume).epsilon(1e-9));
+}
+
+// ---- sleep
+
+/// A bed of clumps and balls on a floor, and one that falls on it.
+template <class S, class Space, class Sleep = collide::sleep>
+struct bed_of_clumps {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  using scene =
+      clumps_in<Space, S, Sleep, gravity, collide::drag, law, collide::polydisperse, collide::moving_bodies<>>;
+  static constexpr double dt = 5e-4;
+
+  static scene make(Space const& space, Sleep const& sleep) {
+    world<S> w;
+    add_floor(w, 2, 4);
+    scene made(space, w, sleep, gravity{}, collide::drag{3, 0}, law_of<law>(2e6, 0.3, 0.5, 0.2), {}, {});
+    std::vector<placed_clump> all;
+    for (int i = 0; i < 10; ++i) {
+      all.push_back(clump_at(0.35 * (i % 3 - 1), 0.35 * (i / 3 % 3 - 1), i < 9 ? 0.3 : 6));
+      all.back().shape = std::size_t(i) % 2;
+      all.back().scale = 0.3;
+      collide::turn_at_random(all.back().at.rotation, std::uint64_t(i));
+    }
+    collide::set_clumps(made.made, {dumbbell(0.5, 0.4), potato()}, all);
+    return made;
+  }
+  /// How many clumps sleep, of which all spheres do or none.
+  static int asleep(scene const& of) {
+    auto const slow = of.made.template to_host<collide::slow_steps>();
+    auto const first = of.made.template to_host<collide::in_clump>();
+    int n = 0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      CHECK(int(slow[i]) == int(slow[first[i]]));
+      n += first[i] == i && slow[i] >= 50 && slow[i] < collide::detail::carried_by_moving;
+    }
+    return n;
+  }
+};
+
+/// In place of sleep: nothing.
+struct no_sleep {
+  using reads = collide::columns<velocity>;
+};
+
+/// A bed of clumps comes to rest where it does without sleep, sleeps, and keeps its bits until a clump falls on it:
+/// whom that hits is awake, with all its spheres.
+template <class S, class Space>
+void check_sleep_of_clumps(Space const& space) {
+  using bed = bed_of_clumps<S, Space>;
+  auto found = bed::make(space, collide::sleep{0.01, 50});
+  auto awake = bed_of_clumps<S, Space, no_sleep>::make(space, {});
+  S const dt = S(bed::dt);
+  found.made.steps(3600, dt);
+  awake.made.steps(3600, dt);
+  CHECK(bed::asleep(found) == 9);
+  auto const before = found.made.template to_host<position>(), other = awake.made.template to_host<position>();
+  for (std::size_t i = 0; i + 9 < before.size(); ++i) CHECK(std::abs(double(before[i]) - double(other[i])) < 3e-3);
+  found.made.steps(200, dt);
+  auto const after = found.made.template to_host<position>();
+  std::size_t const bytes = (before.size() - 9) * sizeof(S);  // without the three spheres that fall
+  CHECK(std::memcmp(before.data(), after.data(), bytes) == 0);
+  int least = 9;
+  for (int k = 0; k < 300; ++k) {
+    found.made.steps(10, dt);
+    least = std::min(least, bed::asleep(found));
+  }
+  CHECK(least < 9);
+  CHECK(std::memcmp(before.data(), found.made.template to_host<position>().data(), bytes) != 0);
+  found.made.steps(6000, dt);
+  CHECK(bed::asleep(found) == 10);
+}
+
+/// Clumps asleep on a body are woken where that begins to move, and go with it: one on the floor, and one on it.
+template <class S, class Space>
+void check_clumps_asleep_on_bodies(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  world<S> w;
+  add_floor(w, 2, 4);
+  clumps_in<Space, S, collide::sleep, gravity, law, collide::moving_bodies<collide::driven>> found(
+      space, w, {0.01, 50}, gravity{}, law_of<law>(2e6, 0.3, 0.5, 0.2), {});
+  placed<S> const corners(space, w.corners);
+  found.made.set_mesh(collide::triangle_soup(corners.data(), corners.size() / 9), {{0, w.corners.size() / 9, {}}});
+  std::vector<ball> plate;
+  for (int i = 0; i < 9; ++i) plate.push_back({{0.2 * (i % 3), 0.2 * (i / 3), 0}, 0.11});
+  collide::set_clumps(found.made, {collide::shape_of_clump(plate)}, {clump_at(0, 0, 0.11), clump_at(0.1, 0.1, 0.29)});
+  found.made.steps(1500, S(5e-4));
+  for (auto const slow : found.made.template to_host<collide::slow_steps>()) CHECK((slow >= 50 && slow < 128));
+  double const low = found.centre(0).z(), high = found.centre(9).z();
+  collide::body_state state;
+  for (double const speed : {-0.005, -0.1, 0.005}) {
+    state.moving.linear[2] = speed;
+    for (int i = 0; i < 300; ++i) {
+      state.at.position[2] += speed * 5e-4;
+      space.copy_from_host(found.made.bodies().states(), &state, 1);
+      found.made.step(S(5e-4));
+      space.synchronize();
+    }
+    CHECK(std::abs(found.centre(0).z() - low - state.at.position[2]) < 5e-4);
+    CHECK(std::abs(found.centre(9).z() - high - state.at.position[2]) < 1e-3);
+  }
+}
+
+/// What sleeps, is hit and comes to rest again has the same bits in any space, and after a checkpoint while it sleeps;
+/// all are awake when gravity changes.
+template <class S, class Space>
+void check_same_sleeping_clumps(Space const& space) {
+  collide::sleep const sleep{0.01, 50};
+  auto reference = bed_of_clumps<S, collide::host>::make(collide::host(1), sleep);
+  using bed = bed_of_clumps<S, Space>;
+  auto found = bed::make(space, sleep), loaded = bed::make(space, sleep);
+  S const dt = S(bed::dt);
+  auto const slow_of = [](auto const& of) { return of.made.template to_host<collide::slow_steps>(); };
+  found.made.steps(3600, dt);
+  CHECK(bed::asleep(found) == 9);
+  std::stringstream file;
+  collide::save(found.made, file);
+  collide::load(loaded.made, file);
+  auto const go_on = [&](auto& of, std::size_t begun) {
+    of.made.steps(5000 - begun, dt);
+    of.made.template effect<gravity>().x = 2;
+    for (auto const slow : slow_of(of)) CHECK(int(slow) == 0);
+    of.made.steps(500, dt);
+  };
+  go_on(reference, 0);
+  go_on(found, 3600);
+  go_on(loaded, 3600);
+  CHECK(state_of_clumps(found.made) == state_of_clumps(reference.made));
+  CHECK(state_of_clumps(loaded.made) == state_of_clumps(reference.made));
+  CHECK(slow_of(found) == slow_of(reference));
+  CHECK(slow_of(loaded) == slow_of(reference));
+}
+
+// ---- sources
 
 /// A source makes clumps that wait for it, turned at random; those of one sphere have the bits of spheres. What a sink
 /// takes leaves its place to the next.

@@ -35,3 +35,16 @@ TEST_CASE("clumps: the same bits in every space, and after a checkpoint") {
 }
 
 TEST_CASE("clumps: their energy stays where nothing takes it") { tests::check_energy_of_clumps(host(1)); }
+
+TEST_CASE("clumps: what lies still sleeps as one, until something falls on it or the floor moves") {
+  tests::check_sleep_of_clumps<double>(host(1));
+  tests::check_sleep_of_clumps<float>(blocks());
+  tests::check_clumps_asleep_on_bodies<double>(host(1));
+  tests::check_same_sleeping_clumps<double>(host(2));
+  tests::check_same_sleeping_clumps<float>(blocks());
+}
+
+TEST_CASE("clumps: they vanish as a whole where one of their spheres meets a sink") {
+  tests::check_sink_of_clumps(host(1));
+  tests::check_sink_of_clumps(blocks());
+}

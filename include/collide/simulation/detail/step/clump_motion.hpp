@@ -28,6 +28,21 @@ struct moving_clump {
     whole.the_radius = own[clump_inertia{}].of[3];
   }
 
+  /// What has come of one of its spheres has come of the clump: it is gone, awake, or in contact.
+  COLLIDE_HD_INLINE void gather() {
+    using known = typename Effects::clump_writes;
+    for_each_sphere([&](std::size_t i) {
+      if constexpr (contains<known, alive>) whole[alive{}] = min(whole[alive{}], state.at(alive{})[i]);
+      if constexpr (contains<known, slow_steps>) {
+        auto const behind = [](int n) { return (n + carried_by_moving) % 256; };  // what is carried by what moves
+        std::uint8_t const n = state.at(slow_steps{})[i];
+        if (behind(n) < behind(whole[slow_steps{}])) whole[slow_steps{}] = n;
+        if (state.at(in_contact{})[i] == 1) whole[in_contact{}] = 1;
+      }
+    });
+    if constexpr (contains<known, alive> || contains<known, slow_steps>) tell_spheres();
+  }
+
   /// Forces on all spheres, in their order, and what else accelerates at the centre, for a time.
   COLLIDE_HD_INLINE void kick(Effects const& effects, S time) {
     turned_axes<S> const axes(own[clump_rotation{}]);
@@ -63,8 +78,11 @@ struct moving_clump {
   COLLIDE_HD_INLINE void end(Effects const& effects, typename Effects::space_type const& space, S dt) {
     if constexpr (Effects::repeats) own[clump_centre{}] = space.inside(own[clump_centre{}]);
     whole[position{}] = own[clump_centre{}];
+    if constexpr (contains<typename Effects::all, slow_steps>)
+      whole[angular_velocity{}] =
+          turning_of(turned_axes<S>(own[clump_rotation{}]), own[clump_inertia{}], own[clump_momentum{}]);
     effects.template end_step<true>(whole, dt);
-    for_each_sphere([&](std::size_t i) { state.store(whole, i, typename Effects::clump_writes{}); });
+    tell_spheres();
   }
 
   /// Gives spheres their velocities, and, if it has `moved`, their places, which are inside a box that repeats.
@@ -97,6 +115,10 @@ struct moving_clump {
   }
 
  private:
+  /// Writes what effects have written that see the clump as one sphere.
+  COLLIDE_HD_INLINE void tell_spheres() const {
+    for_each_sphere([&](std::size_t i) { state.store(whole, i, typename Effects::clump_writes{}); });
+  }
   /// The acceleration of a sphere by effects that know more of it than its motion.
   COLLIDE_HD_INLINE vec3<S> pushed(Effects const& effects, std::size_t i, S time) const {
     sphere_type p;
@@ -124,6 +146,7 @@ struct step_clumps {
   COLLIDE_HD void operator()(std::size_t i) const {
     if (state.at(in_clump{})[i] != i) return;
     moving_clump<S, Effects> clump(state, i);
+    clump.gather();
     if (effects.is_inactive(clump.whole)) return;
     clump.kick(effects, S(Ends ? Effects::integrator::kick_after : Effects::integrator::kick_before) * dt);
     if constexpr (Ends) {
@@ -165,8 +188,11 @@ constexpr bool check_beside_clumps() {
                 "collide: clumps: an effect that moves particles when a step begins or ends, such as box_walls, does "
                 "not know them: take a mesh in place of box_walls");
   static_assert(is_known || !(has_is_inactive<E, S>::value || contains<written, alive>),
-                "collide: clumps: sleep, and effects that make or leave out particles, do so with single spheres, not "
-                "with clumps");
+                "collide: clumps: effects that make or leave out particles do so with single spheres, not with clumps");
+  static_assert(is_known || !(has_on_mesh_contact<E, S>::value || has_after_mesh_contact<E, S>::value ||
+                              (has_on_mesh_impulse<E, S>::value && !Effects::overlaps)),
+                "collide: clumps press on the mesh by the forces of granular_contact: bounce, friction, adhesion and "
+                "other impulses do not know them");
   return true;
 }
 template <class Space, class S, class Effects, class... E>
@@ -174,10 +200,9 @@ constexpr bool check_clumps() {
   if constexpr (Effects::has_clumps) {
     static_assert(Effects::ends_after_meeting && Effects::keeps_pair_torques,
                   "collide: clumps need velocity_verlet, and forces between particles: name granular_contact");
-    static_assert(
-        !Effects::any_mesh_contact,
-        "collide: clumps press on the mesh by the forces of granular_contact: bounce, friction, adhesion, absorb "
-        "and other impulses do not know them");
+    static_assert(!Effects::keeps_support,
+                  "collide: clumps: how sleeping ones press on the mesh is not known to reaction, mesh_forces and "
+                  "others: leave out these, or sleep");
     static_assert((check_beside_clumps<Space, S, Effects, E>() && ...));
   }
   return true;
