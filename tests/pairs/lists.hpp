@@ -75,9 +75,11 @@ using list_33 = scene_list<mesh_kind::driven, collide::karabassi<>, float,
     collide::sleep, collide::gravity, collide::emit, collide::granular_contact<collide::linear, collide::dashpot>, collide::wear<>, collide::contact_work<>, collide::lost, collide::reaction, collide::periodic_box, collide::moving_bodies<collide::driven>>;
 using list_34 = scene_list<mesh_kind::fixed, collide::karabassi<>, float,
     collide::gravity, collide::sphere_contact, collide::contact_work<>, collide::polydisperse, collide::periodic_box, collide::lost>;
-using list_35 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
-    collide::velocity_verlet, collide::gravity, collide::granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>, collide::wear<>, collide::sleep, collide::clumps, collide::pair_forces, tests::pairs::stirs, collide::contact_work<>, collide::polydisperse, collide::lost, collide::moving_bodies<>>;
-using list_36 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, float,
+using list_35 = scene_list<mesh_kind::driven, collide::karabassi<>, double,
+    collide::velocity_verlet, collide::gravity, collide::granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>, collide::wear<>, collide::sleep, collide::clumps, collide::contact_work<>, collide::mesh_forces, collide::reaction, collide::polydisperse, collide::lost, collide::moving_bodies<collide::driven>>;
+using list_36 = scene_list<mesh_kind::moving, collide::karabassi<>, float,
+    collide::velocity_verlet, collide::gravity, collide::granular_contact<collide::linear, collide::cundall_strack, collide::marshall<collide::epsd>>, collide::sleep, collide::clumps, collide::pair_forces, tests::pairs::stirs, collide::contact_work<>, collide::mass_flow<>, collide::absorbing_box, collide::periodic_box, collide::moving_bodies<>>;
+using list_37 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, float,
     collide::velocity_verlet, collide::sphere_contact, collide::gravity, collide::absorb, collide::clumps, collide::mass_flow<>, collide::sleep, collide::polydisperse, collide::moving_bodies<collide::driven>>;
 // clang-format on
 

@@ -83,7 +83,9 @@ LAST = [
      ("driven", "karabassi", "float")),
     ("sleep gravity emit granular_contact wear contact_work lost reaction periodic_box", ("driven", "karabassi", "float")),
     ("gravity sphere_contact contact_work polydisperse periodic_box lost", ("fixed", "karabassi", "float")),
-    ("velocity_verlet gravity granular_contact wear sleep clumps pair_forces external_forces contact_work polydisperse lost", ("moving", "karabassi", "double")),
+    ("velocity_verlet gravity granular_contact wear sleep clumps contact_work mesh_forces reaction polydisperse lost", ("driven", "karabassi", "double")),
+    ("velocity_verlet gravity granular_contact sleep clumps pair_forces external_forces contact_work mass_flow absorbing_box periodic_box",
+     ("moving", "karabassi", "float")),
     ("velocity_verlet sphere_contact gravity absorb clumps mass_flow sleep polydisperse", ("driven", "karabassi_swept", "float")),
 ]
 # Pairs that do not compile: the test of tests/compile_fail, and the reason.
@@ -99,7 +101,6 @@ REFUSED = {
     "granular_contact_that_sweeps": "granular_contact with karabassi_swept",
     "clumps_with_bounce": "clumps beside bounce, friction, spin or adhesion",
     "clumps_with_box_walls": "clumps beside box_walls",
-    "clumps_with_sleep_and_reaction": "clumps beside sleep and reaction or mesh_forces",
     "clumps_on_ranks": "clumps on several ranks",
     "clumps_without_velocity_verlet": "clumps without velocity_verlet and contact by forces",
     "two_integrators": "two integrators",

@@ -27,3 +27,5 @@ TEST_CASE("pairs: list 33") { check_list<list_33>(); }
 static bool const list_33_is_hunted = hunt<list_33>("33", "sleep gravity emit granular_contact wear contact_work lost reaction periodic_box");
 TEST_CASE("pairs: list 34") { check_list<list_34>(); }
 static bool const list_34_is_hunted = hunt<list_34>("34", "gravity sphere_contact contact_work polydisperse periodic_box lost");
+TEST_CASE("pairs: list 36") { check_list<list_36>(); }
+static bool const list_36_is_hunted = hunt<list_36>("36", "velocity_verlet gravity granular_contact sleep clumps pair_forces external_forces contact_work mass_flow absorbing_box periodic_box");

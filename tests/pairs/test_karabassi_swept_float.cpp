@@ -19,5 +19,5 @@ TEST_CASE("pairs: list 27") { check_list<list_27>(); }
 static bool const list_27_is_hunted = hunt<list_27>("27", "box_walls bounce friction spin reaction");
 TEST_CASE("pairs: list 28") { check_list<list_28>(); }
 static bool const list_28_is_hunted = hunt<list_28>("28", "gravity absorb pair_forces polydisperse");
-TEST_CASE("pairs: list 36") { check_list<list_36>(); }
-static bool const list_36_is_hunted = hunt<list_36>("36", "velocity_verlet sphere_contact gravity absorb clumps mass_flow sleep polydisperse");
+TEST_CASE("pairs: list 37") { check_list<list_37>(); }
+static bool const list_37_is_hunted = hunt<list_37>("37", "velocity_verlet sphere_contact gravity absorb clumps mass_flow sleep polydisperse");

@@ -526,6 +526,38 @@ void check_clumps_asleep_on_bodies(Space const& space) {
   }
 }
 
+/// Clumps of spheres that overlap press with the weight of their unions when they sleep, one of them on the other, as
+/// they do when they are awake.
+template <class S, class Space>
+void check_weight_of_sleeping_clumps(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  world<S> w;
+  add_floor(w, 2, 4);
+  std::vector<ball> plate;
+  for (int i = 0; i < 9; ++i) plate.push_back({{0.2 * (i % 3), 0.2 * (i / 3), 0}, 0.11});
+  clump_shape const shape = collide::shape_of_clump(plate);
+  double const weight = 2 * 1000 * shape.volume * 9.81, dt = 5e-4;
+  collide::reaction_sums sums(space, 1, weight * 1e-12);
+  clumps_in<Space, S, collide::sleep, gravity, law, collide::mesh_forces, collide::reaction, collide::moving_bodies<>>
+      some(space, w, {0.01, 50}, gravity{}, law_of<law>(2e6, 0.3, 0.5, 0.2), {1000}, sums.effect(1000), {});
+  placed<S> const corners(space, w.corners);
+  some.made.set_mesh(collide::triangle_soup(corners.data(), corners.size() / 9), {{0, w.corners.size() / 9, {}}});
+  collide::set_clumps(some.made, {shape}, {clump_at(0, 0, 0.11), clump_at(0.1, 0.1, 0.29)});
+  some.made.steps(2000, S(dt));
+  for (auto const slow : some.made.template to_host<collide::slow_steps>()) CHECK((slow >= 50 && slow < 128));
+  sums.clear(space);
+  some.made.steps(100, S(dt));
+  double pressed = 0, given = 0, turned = 0;
+  auto const forces = some.made.template to_host<collide::mesh_force>();
+  for (std::size_t i = 2; i < forces.size(); i += 3) pressed += double(forces[i]);
+  for (auto const& one : sums.read(space)) given += one.linear[2], turned += one.angular[0];
+  double const close = sizeof(S) == 4 ? 1e-4 : 1e-9;
+  CHECK(pressed == doctest::Approx(weight).epsilon(close));
+  CHECK(given == doctest::Approx(-weight * 100 * dt).epsilon(close));
+  double const y = (some.centre(0).y() + some.centre(9).y()) / 2;  // where the weight is
+  CHECK(turned == doctest::Approx(y * given).epsilon(close * 10));
+}
+
 /// What sleeps, is hit and comes to rest again has the same bits in any space, and after a checkpoint while it sleeps;
 /// all are awake when gravity changes.
 template <class S, class Space>

@@ -40,6 +40,8 @@ TEST_CASE("clumps: what lies still sleeps as one, until something falls on it or
   tests::check_sleep_of_clumps<double>(host(1));
   tests::check_sleep_of_clumps<float>(blocks());
   tests::check_clumps_asleep_on_bodies<double>(host(1));
+  tests::check_weight_of_sleeping_clumps<double>(host(1));
+  tests::check_weight_of_sleeping_clumps<float>(blocks());
   tests::check_same_sleeping_clumps<double>(host(2));
   tests::check_same_sleeping_clumps<float>(blocks());
 }

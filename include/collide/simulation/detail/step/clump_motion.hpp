@@ -6,6 +6,7 @@
 
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/clumps.hpp>
+#include <collide/simulation/detail/step/mesh_ledger.hpp>
 
 namespace collide::detail {
 
@@ -69,6 +70,46 @@ struct moving_clump {
     own[clump_momentum{}] += torque * time;
   }
 
+  /// Tells the effects what holds one that sleeps against what would accelerate and turn it for a time: each surface
+  /// that has supported a sphere gives that what it gave on the mean, and there its part of the rest.
+  COLLIDE_HD void record_sleeping(Effects const& effects, S time, S dt) {
+    turned_axes<S> const axes(own[clump_rotation{}]);
+    auto const arm = [&](std::size_t i) { return axes.to_space(vector(clump_offset{}, i)); };
+    auto const size = [](vec3<S> const& of) { return sqrt_rn(dot(of, of)); };
+    vec3<S> rest = own[clump_velocity{}], torque = own[clump_momentum{}];  // over the mass
+    kick(effects, time);
+    rest -= own[clump_velocity{}], torque -= own[clump_momentum{}];
+    int surfaces = 0;
+    S sizes = 0;
+    for_each_supported([&](sphere_type& p, S mass) {
+      for_each_support(p, [&](vec3<S> const& of, std::uint8_t by) {
+        if (by == 0) return;
+        ++surfaces;
+        sizes += size(of) / mass;
+        rest -= of * (time / mass);
+        torque -= cross(arm(p.number), of) * (time / mass);
+      });
+    });
+    for_each_supported([&](sphere_type& p, S mass) {
+      vec3<S> const none(S(0), S(0), S(0)), about = torque + cross(rest, arm(p.number));
+      auto const tell = [&](vec3<S> const& mean, S part, id body) {
+        mesh_impulse<S> const given{mean * time + rest * part,
+                                    about * (part / (S(0.4) * p.the_radius * p.the_radius)),
+                                    p[position{}],
+                                    none,
+                                    p[velocity{}],
+                                    no_id,
+                                    body};
+        effects.on_mesh_impulse(p, given, dt);
+      };
+      if (surfaces == 0 && p.number == first) tell(none, mass, no_id);
+      for_each_support(p, [&](vec3<S> const& of, std::uint8_t by) {
+        if (by != 0) tell(of, sizes > 0 ? size(of) / sizes : mass / S(surfaces), body_of_frame(by - 1));
+      });
+      state.store(p, p.number, typename Effects::integration_writes{});
+    });
+  }
+
   COLLIDE_HD_INLINE void move(S time) {
     own[clump_centre{}] += own[clump_velocity{}] * time;
     turn_freely(own[clump_rotation{}], own[clump_inertia{}], own[clump_momentum{}], time);
@@ -115,6 +156,15 @@ struct moving_clump {
   }
 
  private:
+  /// Calls f(sphere, mass of the clump over its own).
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_supported(F const& f) const {
+    for_each_sphere([&](std::size_t i) {
+      sphere_type p;
+      state.load(p, i);
+      f(p, state.at(clump_mass{})[i]);
+    });
+  }
   /// Writes what effects have written that see the clump as one sphere.
   COLLIDE_HD_INLINE void tell_spheres() const {
     for_each_sphere([&](std::size_t i) { state.store(whole, i, typename Effects::clump_writes{}); });
@@ -147,8 +197,14 @@ struct step_clumps {
     if (state.at(in_clump{})[i] != i) return;
     moving_clump<S, Effects> clump(state, i);
     clump.gather();
-    if (effects.is_inactive(clump.whole)) return;
-    clump.kick(effects, S(Ends ? Effects::integrator::kick_after : Effects::integrator::kick_before) * dt);
+    S const time = S(Ends ? Effects::integrator::kick_after : Effects::integrator::kick_before) * dt;
+    if (effects.is_inactive(clump.whole)) {
+      if constexpr (Effects::keeps_support) {
+        if (effects.only_sleeps(clump.whole)) clump.record_sleeping(effects, time, dt);
+      }
+      return;
+    }
+    clump.kick(effects, time);
     if constexpr (Ends) {
       clump.end(effects, space, dt);
     } else {
@@ -200,9 +256,6 @@ constexpr bool check_clumps() {
   if constexpr (Effects::has_clumps) {
     static_assert(Effects::ends_after_meeting && Effects::keeps_pair_torques,
                   "collide: clumps need velocity_verlet, and forces between particles: name granular_contact");
-    static_assert(!Effects::keeps_support,
-                  "collide: clumps: how sleeping ones press on the mesh is not known to reaction, mesh_forces and "
-                  "others: leave out these, or sleep");
     static_assert((check_beside_clumps<Space, S, Effects, E>() && ...));
   }
   return true;

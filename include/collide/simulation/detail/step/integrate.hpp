@@ -28,13 +28,6 @@ COLLIDE_HD_INLINE auto first_kick([[maybe_unused]] Particle const& p) {
   }
 }
 
-/// True of a sphere of a clump, which moves as that does (clump_motion.hpp).
-template <class Particle>
-COLLIDE_HD_INLINE bool is_of_clump([[maybe_unused]] Particle const& p) {
-  if constexpr (contains<typename Particle::list, in_clump>) return p[in_clump{}] != no_id;
-  return false;
-}
-
 /// The beginning of a particle's step. Returns for how long all accelerate it in the first kick: 0 if the mesh holds
 /// it, or it is of a clump.
 template <class Context, class Particle>

@@ -18,6 +18,13 @@ COLLIDE_HD_INLINE void for_each_support(Particle& p, F const& f) {
   }
 }
 
+/// True of a sphere of a clump, which moves as that does (clump_motion.hpp).
+template <class Particle>
+COLLIDE_HD_INLINE bool is_of_clump([[maybe_unused]] Particle const& p) {
+  if constexpr (contains<typename Particle::list, in_clump>) return p[in_clump{}] != no_id;
+  return false;
+}
+
 /// Keeps a mean of what the mesh gives to a particle in a step, for when the particle sleeps.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void keep_support([[maybe_unused]] Context const& context, [[maybe_unused]] Particle& p,
@@ -51,11 +58,12 @@ COLLIDE_HD_INLINE void record_impulse(Context const& context, Particle& p,
 /// Tells the effects what holds a particle that sleeps against what would accelerate or turn it for a part of the step:
 /// it does not move. The surfaces that have supported it give that: what they gave on the mean, and of the difference,
 /// and of what would turn it, each has a part as large as what it gave. What lies on others that sleep is held by these
-/// except for a rest, which goes to what rests, unless effects may hold it that know no mesh.
+/// except for a rest, which goes to what rests, unless effects may hold it that know no mesh. Of clumps see
+/// clump_motion.hpp.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void record_sleeping(Context const& context, Particle& p, typename Context::scalar fraction) {
   using S = typename Context::scalar;
-  if (fraction == 0) return;
+  if (fraction == 0 || is_of_clump(p)) return;
   vec3<S> const none(S(0), S(0), S(0));
   S const time = fraction * context.dt;
   Particle next = p;
