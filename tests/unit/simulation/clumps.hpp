@@ -558,8 +558,8 @@ void check_weight_of_sleeping_clumps(Space const& space) {
   CHECK(turned == doctest::Approx(y * given).epsilon(close * 10));
 }
 
-/// What sleeps, is hit and comes to rest again has the same bits in any space, and after a checkpoint while it sleeps;
-/// all are awake when gravity changes.
+/// A bed that sleeps, is hit and comes to rest again has the same bits in any space, and after a checkpoint while it
+/// sleeps; all are awake when gravity changes.
 template <class S, class Space>
 void check_same_sleeping_clumps(Space const& space) {
   collide::sleep const sleep{0.01, 50};

@@ -29,13 +29,13 @@ struct moving_clump {
     whole.the_radius = own[clump_inertia{}].of[3];
   }
 
-  /// What has come of one of its spheres has come of the clump: it is gone, awake, or in contact.
+  /// Tells the clump, and all of its spheres, that one of them is gone, awake, or in contact.
   COLLIDE_HD_INLINE void gather() {
     using known = typename Effects::clump_writes;
     for_each_sphere([&](std::size_t i) {
       if constexpr (contains<known, alive>) whole[alive{}] = min(whole[alive{}], state.at(alive{})[i]);
       if constexpr (contains<known, slow_steps>) {
-        auto const behind = [](int n) { return (n + carried_by_moving) % 256; };  // what is carried by what moves
+        auto const behind = [](int n) { return (n + carried_by_moving) % 256; };  // first those carried by what moves
         std::uint8_t const n = state.at(slow_steps{})[i];
         if (behind(n) < behind(whole[slow_steps{}])) whole[slow_steps{}] = n;
         if (state.at(in_contact{})[i] == 1) whole[in_contact{}] = 1;
