@@ -32,16 +32,18 @@ struct moving_clump {
   /// Tells the clump, and all of its spheres, that one of them is gone, awake, or in contact.
   COLLIDE_HD_INLINE void gather() {
     using known = typename Effects::clump_writes;
-    for_each_sphere([&](std::size_t i) {
-      if constexpr (contains<known, alive>) whole[alive{}] = min(whole[alive{}], state.at(alive{})[i]);
-      if constexpr (contains<known, slow_steps>) {
-        auto const behind = [](int n) { return (n + carried_by_moving) % 256; };  // first those carried by what moves
-        std::uint8_t const n = state.at(slow_steps{})[i];
-        if (behind(n) < behind(whole[slow_steps{}])) whole[slow_steps{}] = n;
-        if (state.at(in_contact{})[i] == 1) whole[in_contact{}] = 1;
-      }
-    });
-    if constexpr (contains<known, alive> || contains<known, slow_steps>) tell_spheres();
+    if constexpr (contains<known, alive> || contains<known, slow_steps>) {
+      for_each_sphere([&](std::size_t i) {
+        if constexpr (contains<known, alive>) whole[alive{}] = min(whole[alive{}], state.at(alive{})[i]);
+        if constexpr (contains<known, slow_steps>) {
+          auto const behind = [](int n) { return (n + carried_by_moving) % 256; };  // first those carried by what moves
+          std::uint8_t const n = state.at(slow_steps{})[i];
+          if (behind(n) < behind(whole[slow_steps{}])) whole[slow_steps{}] = n;
+          if (state.at(in_contact{})[i] == 1) whole[in_contact{}] = 1;
+        }
+      });
+      tell_spheres();
+    }
   }
 
   /// Forces on all spheres, in their order, and what else accelerates at the centre, for a time.
