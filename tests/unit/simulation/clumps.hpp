@@ -496,6 +496,30 @@ void check_sleep_of_clumps(Space const& space) {
   CHECK(bed::asleep(found) == 10);
 }
 
+/// A clump that lies wakes as a whole, whichever of its spheres a ball falls on.
+template <class Space>
+void check_each_sphere_wakes(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  world<double> w;
+  add_floor(w, 2, 4);
+  for (double const hit : {0.0, 0.6}) {
+    clumps_in<Space, double, collide::sleep, gravity, law> some(space, w, {0.01, 50}, gravity{},
+                                                                law_of<law>(2e6, 0.3, 0.5, 0.2));
+    placed_clump falling = clump_at(hit, 0.02, 2);
+    falling.shape = 1;
+    collide::set_clumps(some.made, {dumbbell(0.6, 0.1), collide::shape_of_clump({ball{{0, 0, 0}, 0.1}})},
+                        {clump_at(0, 0, 0.1), falling});
+    auto const slow_of = [&](std::size_t i) { return int(some.made.template to_host<collide::slow_steps>()[i]); };
+    some.made.steps(1000, 5e-4);
+    CHECK((slow_of(0) >= 50 && slow_of(1) >= 50 && slow_of(2) == 0));
+    vector const rested = some.centre(0);
+    some.made.steps(300, 5e-4);
+    CHECK(slow_of(0) < 50);
+    CHECK(slow_of(1) == slow_of(0));
+    CHECK((some.centre(0) - rested).norm() > 1e-4);
+  }
+}
+
 /// Clumps asleep on a body are woken where that begins to move, and go with it: one on the floor, and one on it.
 template <class S, class Space>
 void check_clumps_asleep_on_bodies(Space const& space) {

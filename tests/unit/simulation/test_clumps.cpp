@@ -39,6 +39,7 @@ TEST_CASE("clumps: their energy stays where nothing takes it") { tests::check_en
 TEST_CASE("clumps: what lies still sleeps as one, until something falls on it or the floor moves") {
   tests::check_sleep_of_clumps<double>(host(1));
   tests::check_sleep_of_clumps<float>(blocks());
+  tests::check_each_sphere_wakes(host(1));
   tests::check_clumps_asleep_on_bodies<double>(host(1));
   tests::check_weight_of_sleeping_clumps<double>(host(1));
   tests::check_weight_of_sleeping_clumps<float>(blocks());
