@@ -141,8 +141,7 @@ struct resolve_deferred {
   COLLIDE_HD_INLINE void look_again(Block& block, std::size_t stride) const {
     auto const open = lookup.opened();
     block.for_each_thread([&](int thread_rank) {
-      progress at;
-      start(open, at, block.index() * Block::num_threads + static_cast<std::size_t>(thread_rank));
+      progress at = start(open, block.index() * Block::num_threads + static_cast<std::size_t>(thread_rank));
       for (pair p; find_next(open, at, stride, p);) {
         if (resolve<NarrowPhase>(pipeline.mesh[p.triangle], pipeline.spheres[p.sphere])) pipeline.write_hit(p);
       }
@@ -150,16 +149,17 @@ struct resolve_deferred {
   }
 
   template <class Open>
-  COLLIDE_HD_INLINE void start(Open const& open, progress& p, std::size_t sphere) const {
+  COLLIDE_HD_INLINE progress start(Open const& open, std::size_t sphere) const {
+    progress p{};
     p.number = sphere;
-    p.range.count = p.k = 0, p.seen = 0;
     if (sphere < pipeline.spheres.size()) p.at = open.begin(pipeline.spheres[sphere]);
+    return p;
   }
 
   /// Goes on to the next pair that the filter leaves uncertain; false if there is none.
   template <class Open>
   COLLIDE_HD_INLINE bool find_next(Open const& open, progress& p, std::size_t stride, pair& found) const {
-    for (; p.number < pipeline.spheres.size(); start(open, p, p.number + stride)) {
+    for (; p.number < pipeline.spheres.size(); p = start(open, p.number + stride)) {
       auto const shape = pipeline.spheres[p.number];
       id candidate;
       while (next_candidate(open, shape, p, candidate)) {
@@ -190,8 +190,7 @@ struct resolve_deferred {
   template <class Open, class Sphere>
   COLLIDE_HD_INLINE bool is_first(Open const& open, Sphere const& shape, progress const& here, id number) const {
     if constexpr (is_discrete<NarrowPhase, S>) return true;
-    progress p;
-    start(open, p, here.number);
+    progress p = start(open, here.number);
     id other;
     while (next_candidate(open, shape, p, other) && other != number) {
     }
