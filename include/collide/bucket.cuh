@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 
 #include <collide/broad/detail/bucket/cell_index.hpp>
 #include <collide/broad/detail/bucket/sorted_spheres.hpp>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
 #include <collide/broad/detail/tree/radix_tree.hpp>
 #include <collide/broad/detail/tree/sah_tree.hpp>

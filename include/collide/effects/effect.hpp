@@ -126,28 +126,16 @@ void check_part(E const& effect) {
 }
 
 /// True for an effect whose `end_step` asks what the forces are.
-template <class E, class = void>
-inline constexpr bool asks_forces = false;
-template <class E>
-inline constexpr bool asks_forces<E, std::void_t<decltype(E::asks_forces)>> = E::asks_forces;
+COLLIDE_MEMBER_OR(asks_forces, asks_forces, false)
 
 /// True for an effect by which space repeats, from its `lower` to its `upper`.
-template <class E, class = void>
-inline constexpr bool repeats_space = false;
-template <class E>
-inline constexpr bool repeats_space<E, std::void_t<decltype(E::repeats_space)>> = E::repeats_space;
+COLLIDE_MEMBER_OR(repeats_space, repeats_space, false)
 
 /// True for a source of particles.
-template <class E, class = void>
-inline constexpr bool is_source = false;
-template <class E>
-inline constexpr bool is_source<E, std::void_t<decltype(E::makes_particles)>> = E::makes_particles;
+COLLIDE_MEMBER_OR(is_source, makes_particles, false)
 
 /// True if what an effect, or a part of it, has in memory means the same in another process.
-template <class E, class = void>
-inline constexpr bool saves_parameters = true;
-template <class E>
-inline constexpr bool saves_parameters<E, std::void_t<decltype(E::saves_parameters)>> = E::saves_parameters;
+COLLIDE_MEMBER_OR(saves_parameters, saves_parameters, true)
 
 /// f(part) for each part of an effect's parameters that has no padding, for checkpoints: what its `for_each_part(f)`
 /// gives, or all of it. Nothing of what is empty, or of what says that it is not saved.

@@ -2,7 +2,6 @@
 /// Effect: a source of particles.
 #pragma once
 
-#include <cmath>
 #include <type_traits>
 
 #include <collide/effects/clumps.hpp>

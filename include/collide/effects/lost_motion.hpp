@@ -3,7 +3,6 @@
 #pragma once
 
 #include <collide/effects/effect.hpp>
-#include <collide/exact/detail/numeric/rounding.hpp>
 
 namespace collide {
 

@@ -11,7 +11,6 @@
 #include <string>
 #include <tuple>
 #include <typeinfo>
-#include <utility>
 #include <vector>
 
 #include <cxxabi.h>

@@ -65,13 +65,7 @@ inline constexpr bool is_granular<granular_contact<Law...>> = true;
 
 /// The first of the effects that is `granular_contact`, or `none`.
 template <class... E>
-struct granular_of {
-  using type = none;
-};
-template <class E, class... Rest>
-struct granular_of<E, Rest...> {
-  using type = std::conditional_t<is_granular<E>, E, typename granular_of<Rest...>::type>;
-};
+using granular_of = first_of<none, choice<is_granular<E>, E>...>;
 
 /// Particles on the host, in double.
 template <class Detector, class... Effect>

@@ -1,9 +1,8 @@
 /// \file
-/// Detection of members: true where a type has one, and what it is.
+/// Detection of members: true where a type has one, and what it is; the first of some types.
 #pragma once
 
 #include <type_traits>
-#include <utility>
 
 namespace collide::detail {
 
@@ -23,5 +22,23 @@ inline constexpr bool is_valid = detection<void, void, Expression, T...>::value;
 /// Expression<T...> if it is a type, else `Otherwise`.
 template <class Otherwise, template <class...> class Expression, class... T>
 using detected_or = typename detection<void, Otherwise, Expression, T...>::type;
+
+/// The first T of those `choice<Is, T>` with `Is`, or `Otherwise`.
+template <bool Is, class T>
+struct choice;
+template <class Otherwise, class... Choice>
+struct first_of {
+  using type = Otherwise;
+};
+template <class Otherwise, bool Is, class T, class... More>
+struct first_of<Otherwise, choice<Is, T>, More...>
+    : std::conditional_t<Is, std::enable_if<true, T>, first_of<Otherwise, More...>> {};
+
+/// Defines NAME<T>: the static MEMBER of T, or OTHERWISE if it has none.
+#define COLLIDE_MEMBER_OR(NAME, MEMBER, OTHERWISE) \
+  template <class T, class = void>                 \
+  inline constexpr auto NAME = OTHERWISE;          \
+  template <class T>                               \
+  inline constexpr auto NAME<T, std::void_t<decltype(T::MEMBER)>> = T::MEMBER;
 
 }  // namespace collide::detail

@@ -89,18 +89,9 @@ constexpr bool check_effect() {
 }
 
 /// Properties of an effect: the mesh is solid with it; it needs that, or that or particles that meet.
-template <class E, class = void>
-inline constexpr bool repels = false;
-template <class E>
-inline constexpr bool repels<E, std::void_t<decltype(E::repels)>> = E::repels;
-template <class E, class = void>
-inline constexpr bool needs_solid_mesh = false;
-template <class E>
-inline constexpr bool needs_solid_mesh<E, std::void_t<decltype(E::needs_solid_mesh)>> = E::needs_solid_mesh;
-template <class E, class = void>
-inline constexpr bool needs_contacts = false;
-template <class E>
-inline constexpr bool needs_contacts<E, std::void_t<decltype(E::needs_contacts)>> = E::needs_contacts;
+COLLIDE_MEMBER_OR(repels, repels, false)
+COLLIDE_MEMBER_OR(needs_solid_mesh, needs_solid_mesh, false)
+COLLIDE_MEMBER_OR(needs_contacts, needs_contacts, false)
 
 /// Says what is wrong with the effects of a simulation.
 template <class Space, class S, class... Effect>

@@ -42,7 +42,7 @@ struct resistance_slot<true> {
 /// The effects of a simulation and what follows from their list at compile time.
 template <class S, class... E>
 struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::value || ...)> {
-  using integrator = typename integrator_of<E...>::type;
+  using integrator = typename first_of<semi_implicit_euler, choice<is_integrator<E>::value, E>...>::type;
 
   static constexpr bool any_inactive = (has_is_inactive<E, S>::value || ...);
   static constexpr bool any_pair_contact = (pairs_in<E, S> || ...);
@@ -170,32 +170,45 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   static constexpr bool meets_once = (int(pairs_in<E, S>) + ... + 0) == 1 && (is_mutual_effect<E> || ...) &&
                                      !any_inactive && !contains<all, global_number> &&
                                      !(has_try_wake<E, S>::value || ...);
-  template <class F>
-  static constexpr unsigned action_width_of() {
-    if constexpr (is_mutual_effect<F>) return F::action_width;
-    return 0;
-  }
+  using source = typename first_of<absent, choice<is_source<E>, E>...>::type;
+  using mutual_effect = typename first_of<absent, choice<is_mutual_effect<E>, E>...>::type;
   static constexpr bool may_be_reordered = false;  ///< see cell_order.hpp
-  static constexpr unsigned action_width = (action_width_of<E>() + ... + 0u);
+  static constexpr unsigned action_width = mutual_effect::action_width;
   /// Calls f(effect) for the one, on the host.
   template <class F>
   void for_mutual(F const& f) const {
-    (for_mutual_of<E>(f), ...);
+    f(of<mutual_effect>());
   }
 
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
-  /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
-  double due(double dt) const { return (due_of<E>(dt) + ... + 0.0); }
   static constexpr bool makes = (is_source<E> || ...);
+  /// How many particles a source makes in the time `dt`.
+  double due([[maybe_unused]] double dt) const {
+    if constexpr (makes) return of<source>().rate * dt;
+    return 0;
+  }
   /// True if particles of a source are not born where something is already.
-  bool makes_only_where_free() const { return (is_careful<E>() || ...); }
-  S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+  bool makes_only_where_free() const {
+    if constexpr (makes) return of<source>().only_where_free;
+    return false;
+  }
+  /// The radius of the particles of a source; -1 if there is none.
+  S source_radius() const {
+    if constexpr (makes) return static_cast<S>(of<source>().radius);
+    return S(-1);
+  }
 
   /// The space in which particles meet.
   space_type space() const {
     space_type found{};
-    (find_box_of<E>(found), ...);
+    if constexpr (repeats) {
+      auto const& box = of<typename first_of<absent, choice<repeats_space<E>, E>...>::type>();
+      for (int k = 0; k < 3; ++k) {
+        found.lower[k] = static_cast<S>(box.lower[k]);
+        found.upper[k] = static_cast<S>(box.upper[k]);
+      }
+    }
     return found;
   }
 
@@ -314,34 +327,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   }
 
  private:
-  template <class F, class G>
-  void for_mutual_of([[maybe_unused]] G const& f) const {
-    if constexpr (is_mutual_effect<F>) f(of<F>());
-  }
-  template <class F>
-  void find_box_of([[maybe_unused]] space_type& found) const {
-    if constexpr (repeats && repeats_space<F>) {
-      for (int k = 0; k < 3; ++k) {
-        found.lower[k] = static_cast<S>(of<F>().lower[k]);
-        found.upper[k] = static_cast<S>(of<F>().upper[k]);
-      }
-    }
-  }
-  template <class F>
-  double due_of([[maybe_unused]] double dt) const {
-    if constexpr (is_source<F>) return of<F>().rate * dt;
-    return 0;
-  }
-  template <class F>
-  bool is_careful() const {
-    if constexpr (is_source<F>) return of<F>().only_where_free;
-    return false;
-  }
-  template <class F>
-  S source_radius_of() const {
-    if constexpr (is_source<F>) return static_cast<S>(of<F>().radius);
-    return 0;
-  }
   template <class F, class P>
   COLLIDE_HD_INLINE bool is_inactive_of([[maybe_unused]] P& p) const {
     if constexpr (has_is_inactive<F, S>::value) {

@@ -11,10 +11,7 @@
 namespace collide::detail {
 
 /// True of an effect whose particles do the opposite to each other; see pair_actions.hpp.
-template <class E, class = void>
-inline constexpr bool is_mutual_effect = false;
-template <class E>
-inline constexpr bool is_mutual_effect<E, std::void_t<decltype(E::is_mutual)>> = E::is_mutual;
+COLLIDE_MEMBER_OR(is_mutual_effect, is_mutual, false)
 
 /// Sees all that an effect names; only to ask what members the effect has.
 template <class E, class S>
@@ -110,10 +107,7 @@ template <class E, class S>
 using has_end_step_alone = std::bool_constant<is_valid<end_step_alone_call, E, S>>;
 
 /// True of an effect whose `end_step` sees a clump as one sphere, of its volume and at its centre.
-template <class E, class = void>
-inline constexpr bool sees_clumps = false;
-template <class E>
-inline constexpr bool sees_clumps<E, std::void_t<decltype(E::sees_clumps)>> = E::sees_clumps;
+COLLIDE_MEMBER_OR(sees_clumps, sees_clumps, false)
 
 /// True of an effect that accelerates by more than motion: in a clump each sphere by itself.
 using motion_columns = columns<position, velocity, angular_velocity>;
@@ -145,10 +139,7 @@ using begin_step_call =
 template <class E, class Space, class State, class S>
 inline constexpr bool has_begin_step = is_valid<begin_step_call, E, Space, State, S>;
 /// True of an effect whose `begin_step` does the same to particles wherever they are.
-template <class E, class = void>
-inline constexpr bool begins_on_ranks = false;
-template <class E>
-inline constexpr bool begins_on_ranks<E, std::void_t<decltype(E::begins_on_ranks)>> = E::begins_on_ranks;
+COLLIDE_MEMBER_OR(begins_on_ranks, begins_on_ranks, false)
 
 /// True for an effect that contacts with the mesh concern.
 template <class E, class S>
@@ -187,11 +178,7 @@ inline constexpr bool respects_order<E, Later...> =
     !(names<runs_after_of<E>, Later> || ...) && respects_order<Later...>;
 
 /// True of an effect that looks at what others do between particles.
-template <class E, class = void>
-inline constexpr bool follows_pair_contacts = false;
-template <class E>
-inline constexpr bool follows_pair_contacts<E, std::void_t<decltype(E::follows_pair_contacts)>> =
-    E::follows_pair_contacts;
+COLLIDE_MEMBER_OR(follows_pair_contacts, follows_pair_contacts, false)
 
 /// True if no effect of the list comes before one that acts between particles and that it follows.
 template <class S, class... E>
@@ -200,15 +187,5 @@ template <class S, class E, class... Later>
 inline constexpr bool follows_all_pair_contacts<S, E, Later...> =
     !(follows_pair_contacts<E> && ((pairs_in<Later, S> && !follows_pair_contacts<Later>) || ...)) &&
     follows_all_pair_contacts<S, Later...>;
-
-template <class... E>
-struct integrator_of {
-  using type = semi_implicit_euler;
-};
-template <class E, class... Later>
-struct integrator_of<E, Later...> {
-  using type =
-      typename std::conditional_t<is_integrator<E>::value, std::enable_if<true, E>, integrator_of<Later...>>::type;
-};
 
 }  // namespace collide::detail

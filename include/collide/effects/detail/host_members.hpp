@@ -2,7 +2,6 @@
 /// The work of a simulation on the host with effects and columns.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <sstream>

@@ -36,15 +36,9 @@ template <class E>
 using remembers_of = typename detected_or<contact_columns<>, remembers_member, E>::list;
 
 /// By how many of its radii more than its radius a particle sees the mesh for an effect, or for a law of cohesion.
-template <class E, class = void>
-inline constexpr double farther_of = 0;
-template <class E>
-inline constexpr double farther_of<E, std::void_t<decltype(E::farther)>> = E::farther;
+COLLIDE_MEMBER_OR(farther_of, farther, 0.0)
 /// By how many of its radii more than its radius a saddle of the surface may be away for an effect or a law.
-template <class E, class = void>
-inline constexpr double farthest_saddle_of = farther_of<E>;
-template <class E>
-inline constexpr double farthest_saddle_of<E, std::void_t<decltype(E::farthest_saddle)>> = E::farthest_saddle;
+COLLIDE_MEMBER_OR(farthest_saddle_of, farthest_saddle, farther_of<T>)
 
 /// A particle as an effect sees it: with the columns that it names and no others.
 template <class Effect, class Particle>

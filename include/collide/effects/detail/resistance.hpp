@@ -4,7 +4,6 @@
 #pragma once
 
 #include <collide/exact/detail/numeric/elementary.hpp>
-#include <collide/spaces/detail/multiversion.hpp>
 
 namespace collide::detail {
 

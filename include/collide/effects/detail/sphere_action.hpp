@@ -2,7 +2,6 @@
 /// Actions of spheres on each other, for effects that are asked once a pair; see pair_actions.hpp.
 #pragma once
 
-#include <collide/exact/detail/numeric/float_bits.hpp>
 #include <collide/exact/detail/numeric/pack.hpp>
 
 namespace collide::detail {

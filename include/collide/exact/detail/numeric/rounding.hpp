@@ -7,8 +7,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 
 #include <collide/core/geometry.hpp>
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <collide/broad/detail/mesh_lookup.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
 #include <collide/simulation/detail/bodies/float_frames.hpp>
 #include <collide/simulation/detail/bodies/moving_mesh.hpp>
 

@@ -20,7 +20,6 @@
 /// tolerance of each other, of all bodies.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 
