@@ -19,32 +19,24 @@ template <class E>
 struct effect_and_every_member : E, every_effect_member {};
 
 /// Well-formed unless the class E has a member of that name, whatever its parameters are.
+#define COLLIDE_LACKS(MEMBER) \
+  template <class E>          \
+  using MEMBER = decltype(&effect_and_every_member<E>::MEMBER);
 struct effect_lacks {
-  template <class E>
-  using is_inactive = decltype(&effect_and_every_member<E>::is_inactive);
-  template <class E>
-  using accelerate = decltype(&effect_and_every_member<E>::accelerate);
-  template <class E>
-  using on_mesh_contact = decltype(&effect_and_every_member<E>::on_mesh_contact);
-  template <class E>
-  using after_mesh_contact = decltype(&effect_and_every_member<E>::after_mesh_contact);
-  template <class E>
-  using on_mesh_impulse = decltype(&effect_and_every_member<E>::on_mesh_impulse);
-  template <class E>
-  using holds = decltype(&effect_and_every_member<E>::holds);
-  template <class E>
-  using on_pair_contact = decltype(&effect_and_every_member<E>::on_pair_contact);
-  template <class E>
-  using on_mesh_overlap = decltype(&effect_and_every_member<E>::on_mesh_overlap);
-  template <class E>
-  using try_wake = decltype(&effect_and_every_member<E>::try_wake);
-  template <class E>
-  using end_step = decltype(&effect_and_every_member<E>::end_step);
-  template <class E>
-  using begin_step = decltype(&effect_and_every_member<E>::begin_step);
-  template <class E>
-  using check_parameters = decltype(&effect_and_every_member<E>::check_parameters);
+  COLLIDE_LACKS(is_inactive)
+  COLLIDE_LACKS(accelerate)
+  COLLIDE_LACKS(on_mesh_contact)
+  COLLIDE_LACKS(after_mesh_contact)
+  COLLIDE_LACKS(on_mesh_impulse)
+  COLLIDE_LACKS(holds)
+  COLLIDE_LACKS(on_pair_contact)
+  COLLIDE_LACKS(on_mesh_overlap)
+  COLLIDE_LACKS(try_wake)
+  COLLIDE_LACKS(end_step)
+  COLLIDE_LACKS(begin_step)
+  COLLIDE_LACKS(check_parameters)
 };
+#undef COLLIDE_LACKS
 
 /// Says which member of an effect is not as effect.hpp has it.
 template <class E, class Space, class S>

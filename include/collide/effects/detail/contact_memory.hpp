@@ -23,7 +23,7 @@ struct absent {};
 template <class C, class S>
 struct contact_value {
   static_assert(std::is_same<column_element<C, S>, S>::value, "collide: a contact remembers vec3<S> or S");
-  column_value<C, S> value = initial_of<C, S>::value();
+  column_value<C, S> value = initial_of<C, S>();
 };
 
 /// The memory of a contact, by columns.

@@ -48,23 +48,19 @@ template <class C, class S>
 inline constexpr std::size_t column_bytes = sizeof(column_element<C, S>) * std::size_t(column_layout<C, S>::width);
 
 /// The initial value of a column.
-template <class C, class S, class = void>
-struct initial_of {
-  static COLLIDE_HD column_value<C, S> value() {
-    if constexpr (column_layout<C, S>::width == 3) {
-      return column_value<C, S>(S(0), S(0), S(0));
-    } else {
-      return column_value<C, S>(0);
-    }
-  }
-};
 template <class C, class S>
-struct initial_of<C, S, std::void_t<decltype(C::template initial<S>)>> {
-  static COLLIDE_HD column_value<C, S> value() {
+using initial_member = decltype(C::template initial<S>);
+template <class C, class S>
+COLLIDE_HD column_value<C, S> initial_of() {
+  if constexpr (is_valid<initial_member, C, S>) {
     constexpr column_value<C, S> v = C::template initial<S>;
     return v;
+  } else if constexpr (column_layout<C, S>::width == 3) {
+    return column_value<C, S>(S(0), S(0), S(0));
+  } else {
+    return column_value<C, S>(0);
   }
-};
+}
 
 /// The value of one column, in a base class that is found by its type.
 template <class C, class S>
@@ -113,7 +109,7 @@ COLLIDE_HD_INLINE void mark_contact([[maybe_unused]] particle<S, List>& p) {
 /// A particle with the initial values of all columns.
 template <class S, class... C>
 COLLIDE_HD_INLINE void set_initial_values(particle<S, columns<C...>>& p) {
-  ((p[C{}] = initial_of<C, S>::value()), ...);
+  ((p[C{}] = initial_of<C, S>()), ...);
 }
 
 /// The address of a column in memory.

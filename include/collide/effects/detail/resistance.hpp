@@ -15,8 +15,6 @@ struct medium {
 };
 struct medium_at_rest : medium {};
 
-COLLIDE_HD_INLINE double length_of(vec3<double> const& x) { return sqrt_rn(dot(x, x)); }
-
 /// The speed after a time of what a push, not negative, makes faster all the time. All terms are positive: it is right
 /// to rounding.
 COLLIDE_HD_INLINE double speed_after(double speed, double push, double linear, double quadratic, double time) {
@@ -136,13 +134,14 @@ COLLIDE_HD_RARE vec3<double> resisted_strongly(vec3<double> const& v, vec3<doubl
   double const a = length_of(push), speed = length_of(v);
   vec3<double> const along = a > 0 ? scaled(push, div_rn(1, a)) : scaled(v, speed > 0 ? div_rn(1, speed) : 0);
   double const along_it = dot(v, along);
-  if (length_of(v - scaled(along, along_it)) <= 1e-15 * speed) {
+  if (length_of<double>(v - scaled(along, along_it)) <= 1e-15 * speed) {
     return scaled(along, velocity_along(along_it, a, linear, quadratic));
   }
   vec3<double> const ahead = v + push;
   double const gain = dot(push, ahead), to = length_of(ahead);  // how fast the speed grows is gain / to
-  double const middle = gain >= 0 && to > 0 ? speed_after(speed, div_rn(gain, to), linear, quadratic, 0.5)
-                                            : speed_after(length_of(v + scaled(push, 0.5)), 0, linear, quadratic, 0.5);
+  double const middle = gain >= 0 && to > 0
+                            ? speed_after(speed, div_rn(gain, to), linear, quadratic, 0.5)
+                            : speed_after(length_of<double>(v + scaled(push, 0.5)), 0, linear, quadratic, 0.5);
   double const rate = linear + mul_rn(quadratic, middle);
   decay const d = decay_after(rate);
   vec3<double> const after = response{d.left, rate > 0 ? div_rn(d.lost, rate) : 1}(v, push);

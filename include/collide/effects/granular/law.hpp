@@ -120,11 +120,6 @@ inline constexpr bool is_mutual_law = false;
 template <class L>
 inline constexpr bool is_mutual_law<L, std::void_t<decltype(L::is_mutual)>> = L::is_mutual;
 
-template <class S>
-COLLIDE_HD_INLINE S length_of(vec3<S> const& v) {
-  return sqrt_rn(dot(v, v));
-}
-
 /// Turns a vector of the plane of contact about the normal, by the mean spin of the two, by the tangent of half the
 /// angle: it keeps its length.
 template <class S>

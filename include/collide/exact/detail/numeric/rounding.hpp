@@ -76,6 +76,10 @@ COLLIDE_HD_INLINE T dot(vec3<T> const& a, vec3<T> const& b) {
 }
 
 template <class T>
+COLLIDE_HD_INLINE T length_of(vec3<T> const& a) {
+  return sqrt_rn(dot(a, a));
+}
+template <class T>
 COLLIDE_HD_INLINE T dot_mul_add(vec3<T> const& a, vec3<T> const& b) {
   return mul_add(a.x(), b.x(), mul_add(a.y(), b.y(), mul_rn(a.z(), b.z())));
 }

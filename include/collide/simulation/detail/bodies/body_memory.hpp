@@ -69,11 +69,10 @@ COLLIDE_HD_INLINE bool make_unit(body_state& s) {
   return true;
 }
 
-COLLIDE_HD_INLINE double norm(vec3<double> const& x) { return sqrt_rn(dot(x, x)); }
 /// |R x - x| / |x| of the rotation from one pose to another.
 COLLIDE_HD_INLINE double turn_between(frame_pose const& a, frame_pose const& b) {
   // the sine of half the angle between the two: from its cosine, small angles would be lost
-  return 2 * norm(scaled(b.axis, a.w) - scaled(a.axis, b.w) - cross(a.axis, b.axis));
+  return 2 * length_of<double>(scaled(b.axis, a.w) - scaled(a.axis, b.w) - cross(a.axis, b.axis));
 }
 
 /// Kernel functor of `for_each` over bodies: where each is at the end of the step, or, if it `starts`, now.
@@ -135,20 +134,20 @@ struct advance_bodies {
     constexpr double eps = std::numeric_limits<S>::epsilon();
     vec3<double> const shift = f.now.position - f.before.position;
     double const turned = turn_between(f.before, f.now);
-    double const shifted = sqrt_rn(dot(shift, shift)), moved = shifted + mul_rn(turned, norm(r.centre));
+    double const shifted = length_of(shift), moved = shifted + mul_rn(turned, length_of(r.centre));
     vec3<double> const from = f.before.to_world(r.centre), to = f.now.to_world(r.centre), by = to - from;
     f.moves = !(f.before == f.now) || dot(f.conveyor_velocity, f.conveyor_velocity) > 0 ? 1 : 0;
     f.centre = rounded_to<S>(swept ? from : to);
     double const reach = swept ? r.radius + 2 * moved : r.radius;
     // squares of what is smaller lose digits, or vanish
     double const tiny = 16 * sqrt_rn(static_cast<double>(std::numeric_limits<S>::min()));
-    f.reach = static_cast<S>(mul_rn(reach, 1 + 1e-5) + mul_rn(16 * eps, norm(from) + norm(to)) + tiny);
+    f.reach = static_cast<S>(mul_rn(reach, 1 + 1e-5) + mul_rn(16 * eps, length_of(from) + length_of(to)) + tiny);
     f.shrink = static_cast<S>(swept ? 1 - 1e-5 - turned : 1 - 1e-5);
     if (starts) return;
     double const radius = static_cast<double>(limit);
-    if (!swept && norm(by) + mul_rn(turned, r.radius) > radius) fetch_add(&report->fast_steps, 1u);
+    if (!swept && length_of(by) + mul_rn(turned, r.radius) > radius) fetch_add(&report->fast_steps, 1u);
     double const units = turned > 1.5 ? 2048 : 512;
-    bool const is_rough = mul_rn(units * eps, norm(from) + norm(to) + r.radius) > radius;
+    bool const is_rough = mul_rn(units * eps, length_of(from) + length_of(to) + r.radius) > radius;
     if (swept && is_rough && turned > 0.05) fetch_add(&report->rough_steps, 1u);
   }
 };
@@ -241,7 +240,7 @@ class body_memory {
     std::vector<float_frame<S>> quick(frames, float_frame<S>::at_rest());
     for (std::size_t k = 1; k < frames; ++k) quick[k].slack = std::numeric_limits<S>::infinity();  // not known yet
     double extent = 0;
-    for (body_record const& r : records) extent = max(extent, sqrt_rn(dot(r.centre, r.centre)) + r.radius);
+    for (body_record const& r : records) extent = max(extent, length_of(r.centre) + r.radius);
     margin_ = float_frame_margin<S>(extent);
     std::vector<body_state> const states(count_);
     marked_.resize(count_);
@@ -293,7 +292,7 @@ class body_memory {
     for (std::size_t k = 0; k < count_; ++k) {
       frame_pose const &before = marked_[k], &now = frames_.data()[k + 1].now;
       body_record const& r = records_.data()[k];
-      double const shifted = norm(now.to_world(r.centre) - before.to_world(r.centre));
+      double const shifted = length_of<double>(now.to_world(r.centre) - before.to_world(r.centre));
       farthest = max(farthest, shifted + turn_between(before, now) * r.radius);
     }
     return farthest;
@@ -324,7 +323,7 @@ class body_memory {
       r.centre[k] = lower / 2 + upper / 2;
       half[k] = upper / 2 - lower / 2;
     }
-    r.radius = sqrt_rn(dot(half, half));
+    r.radius = length_of(half);
     return r;
   }
 
