@@ -24,7 +24,7 @@ contact<S> at_depth(S depth, collide::feature kind = collide::feature::face, col
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("active particle: a key tells its time, never a later one, and times from 0 to 1 in order", S, float,
+TEST_CASE_TEMPLATE("contact scratch: a key tells its time, never a later one, and times from 0 to 1 in order", S, float,
                    double) {
   std::uint64_t before = 0;
   for (int i = 1; i <= 1000; ++i) {
@@ -38,7 +38,7 @@ TEST_CASE_TEMPLATE("active particle: a key tells its time, never a later one, an
   CHECK(time_of_key<S>(contact_key(S(0), at_depth(S(1)))) == 0);
 }
 
-TEST_CASE_TEMPLATE("active particle: the earlier contact comes first, then the deeper, a face, the lower number", S,
+TEST_CASE_TEMPLATE("contact scratch: the earlier contact comes first, then the deeper, a face, the lower number", S,
                    float, double) {
   using collide::feature;
   auto const deep = contact_key(S(0), at_depth(S(2))), flat = contact_key(S(0), at_depth(S(1)));
@@ -50,7 +50,7 @@ TEST_CASE_TEMPLATE("active particle: the earlier contact comes first, then the d
   CHECK(contact_key(key_time(S(1)), at_depth(S(1))) < no_contact);
 }
 
-TEST_CASE_TEMPLATE("active particle: what lies on a recorded contact's surface is no contact of its own", S, float,
+TEST_CASE_TEMPLATE("contact scratch: what lies on a recorded contact's surface is no contact of its own", S, float,
                    double) {
   active_particle<S, false> a;
   motion_in_world<S> motion{};

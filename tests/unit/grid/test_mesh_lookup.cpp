@@ -15,7 +15,7 @@ auto const mesh = collide::triangle_soup(row.data(), 3);
 
 }  // namespace
 
-TEST_CASE("triangle ref: all triangles, once each and in order, in pieces of any length") {
+TEST_CASE("mesh lookup: all triangles, once each and in order, in pieces of any length") {
   mesh_lookup<float> const ref{mesh, nullptr};
   for (std::uint32_t most : {1u, 2u, 3u, 100u}) {
     candidate_cursor cursor{0, 0, 0, 0};
@@ -33,7 +33,7 @@ TEST_CASE("triangle ref: all triangles, once each and in order, in pieces of any
   }
 }
 
-TEST_CASE("triangle ref: boxes rule out what is far, if there are any") {
+TEST_CASE("mesh lookup: boxes rule out what is far, if there are any") {
   std::vector<triangle_aabb<float>> boxes;
   for (std::size_t i = 0; i < mesh.size(); ++i) boxes.push_back(triangle_aabb_of(mesh[i]));
   mesh_lookup<float> const without{mesh, nullptr}, with{mesh, boxes.data()};
@@ -48,7 +48,7 @@ TEST_CASE("triangle ref: boxes rule out what is far, if there are any") {
   }
 }
 
-TEST_CASE("triangle ref: entries of a cell") {
+TEST_CASE("mesh lookup: entries of a cell") {
   cell_item const entries[] = {{7, cell_coverage::full_box}, {9, 0}};
   candidate_range const range{entries, 0, 2, cell_coverage::full_query};
   CHECK(range.at(0).triangle == 7);

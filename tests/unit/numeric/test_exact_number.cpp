@@ -41,7 +41,7 @@ std::uint64_t modulo(int_words<N> const& x, std::uint64_t p) {
 
 }  // namespace
 
-TEST_CASE("wide integers: sums, differences and signs are those of 128 bits") {
+TEST_CASE("exact number: integers of several words: sums, differences and signs are those of 128 bits") {
   std::mt19937_64 engine(1);
   for (int i = 0; i < 20000; ++i) {
     auto const x = random_words<2>(engine), y = random_words<2>(engine);
@@ -53,7 +53,7 @@ TEST_CASE("wide integers: sums, differences and signs are those of 128 bits") {
   }
 }
 
-TEST_CASE("wide integers: products have all bits, whatever the signs") {
+TEST_CASE("exact number: integers of several words: products have all bits, whatever the signs") {
   std::mt19937_64 engine(2);
   for (int i = 0; i < 20000; ++i) {
     auto const a = random_words<1>(engine), b = random_words<1>(engine);
