@@ -35,9 +35,9 @@ struct clump_shape {
   }
   /// The largest distance of a sphere's surface from the centre of mass.
   double reach() const {
-    double most = 0;
-    for (auto const& s : spheres) most = std::max(most, s.centre.norm() + s.radius);
-    return most;
+    double farthest = 0;
+    for (auto const& s : spheres) farthest = std::max(farthest, s.centre.norm() + s.radius);
+    return farthest;
   }
 };
 
@@ -114,10 +114,10 @@ inline solid_moments moments_of_union(std::vector<sphere<double>> const& spheres
 inline void find_axes(double (&m)[3][3], double (&axes)[3][3]) {
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) axes[i][k] = i == k;
-  double const least = 1e-10 * (m[0][0] + m[1][1] + m[2][2]);  // below it, integration errs
+  double const tolerance = 1e-10 * (m[0][0] + m[1][1] + m[2][2]);  // below it, integration errs
   for (int turn = 0; turn < 60; ++turn) {
     int const p = turn % 3, q = (p + 1) % 3;
-    if (std::abs(m[p][q]) <= least) continue;
+    if (std::abs(m[p][q]) <= tolerance) continue;
     double const ratio = (m[q][q] - m[p][p]) / (2 * m[p][q]);
     double const t = (ratio < 0 ? -1 : 1) / (std::abs(ratio) + std::sqrt(ratio * ratio + 1));
     double const c = 1 / std::sqrt(t * t + 1), s = t * c;
@@ -136,14 +136,14 @@ inline void find_axes(double (&m)[3][3], double (&axes)[3][3]) {
 inline void set_rotation(double (&q)[4], double const (&r)[3][3]) {
   double const squares[4] = {1 + r[0][0] + r[1][1] + r[2][2], 1 + r[0][0] - r[1][1] - r[2][2],
                              1 - r[0][0] + r[1][1] - r[2][2], 1 - r[0][0] - r[1][1] + r[2][2]};
-  int const most = static_cast<int>(std::max_element(squares, squares + 4) - squares);
-  double const twice = std::sqrt(squares[most]), s = 0.5 / twice;
-  q[most] = twice / 2;
+  int const largest = static_cast<int>(std::max_element(squares, squares + 4) - squares);
+  double const twice = std::sqrt(squares[largest]), s = 0.5 / twice;
+  q[largest] = twice / 2;
   for (int i = 0; i < 3; ++i) {
     int const j = (i + 1) % 3, k = (i + 2) % 3;
     double const odd = (r[k][j] - r[j][k]) * s;
-    if (most == 0) q[i + 1] = odd;
-    if (most == i + 1) {
+    if (largest == 0) q[i + 1] = odd;
+    if (largest == i + 1) {
       q[0] = odd;
       q[j + 1] = (r[i][j] + r[j][i]) * s;
       q[k + 1] = (r[i][k] + r[k][i]) * s;

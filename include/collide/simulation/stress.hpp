@@ -80,12 +80,12 @@ struct mesh_load {
     add(other, 1, {0, 0, 0});
     return *this;
   }
-  /// Adds a part of the load of a grain that is an arm away.
-  COLLIDE_HD_INLINE void add(mesh_load const& other, double part, vec3<double> const& arm) {
+  /// Adds a fraction of the load of a grain that is an arm away.
+  COLLIDE_HD_INLINE void add(mesh_load const& other, double fraction, vec3<double> const& arm) {
     contacts += other.contacts;
     for (int i = 0; i < 3; ++i) {
-      force[i] += part * other.force[i];
-      for (int j = 0; j < 3; ++j) moment[i][j] += part * (other.moment[i][j] - other.force[i] * arm[j]);
+      force[i] += fraction * other.force[i];
+      for (int j = 0; j < 3; ++j) moment[i][j] += fraction * (other.moment[i][j] - other.force[i] * arm[j]);
     }
   }
 };

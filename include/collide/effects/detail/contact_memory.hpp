@@ -291,8 +291,8 @@ class surface_memory {
   /// f(array with a value of each of `n` particles) for all that is used; on the host.
   template <class F>
   void for_each_array(std::size_t n, F const& f) const {
-    std::size_t const most = n == 0 ? 0 : *std::max_element(counts_.data(), counts_.data() + n);
-    for (std::size_t k = 0; k < most; ++k) f(records_.data() + k * n);
+    std::size_t const max_count = n == 0 ? 0 : *std::max_element(counts_.data(), counts_.data() + n);
+    for (std::size_t k = 0; k < max_count; ++k) f(records_.data() + k * n);
     f(counts_.data());
   }
   static constexpr std::size_t widest = sizeof(surface_record<S, List>);  ///< bytes of a value of an array

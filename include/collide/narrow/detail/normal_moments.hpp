@@ -173,13 +173,13 @@ struct normal_moments {
   }
 
   /// Adds `part` times v_i m_jk + v_j m_ik + v_k m_ij to the third moment.
-  COLLIDE_HD void add_products(double const (&m)[6], vec3<double> const& v, double part) {
+  COLLIDE_HD void add_products(double const (&m)[6], vec3<double> const& v, double weight) {
     constexpr int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
     for (int i = 0, n = 0; i < 3; ++i) {
       for (int j = i; j < 3; ++j) {
         for (int k = j; k < 3; ++k, ++n) {
           double const sum = mul_rn(v[i], m[at[j][k]]) + mul_rn(v[j], m[at[i][k]]) + mul_rn(v[k], m[at[i][j]]);
-          third[n] += mul_rn(part, sum);
+          third[n] += mul_rn(weight, sum);
         }
       }
     }

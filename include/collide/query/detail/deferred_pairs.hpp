@@ -176,9 +176,9 @@ struct resolve_deferred {
 
   template <class Open, class Sphere>
   COLLIDE_HD_INLINE bool next_candidate(Open const& open, Sphere const& shape, progress& p, id& number) const {
-    constexpr std::uint32_t most = 1u << 30;
+    constexpr std::uint32_t all = 1u << 30;
     if (p.k >= p.range.count) {
-      if (!open.next(shape, p.at, most, p.range)) return false;
+      if (!open.next(shape, p.at, all, p.range)) return false;
       p.k = 0;
     }
     number = p.range.at(p.k).triangle;

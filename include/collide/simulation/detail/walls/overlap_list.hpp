@@ -247,10 +247,10 @@ class overlap_list {
   }
   /// Is a point in a part of the surface?
   template <class Corners>
-  COLLIDE_HD bool meets(std::uint32_t part, vec3<double> const& p, double distance, Corners const& corners) const {
+  COLLIDE_HD bool meets(std::uint32_t root, vec3<double> const& p, double distance, Corners const& corners) const {
     COLLIDE_NO_UNROLL
-    for (std::uint32_t j = part; j < size && items_[j].distance <= distance + 2 * tolerance_; ++j)
-      if (items_[j].parent == part && is_at(corners(items_[j]), p)) return true;
+    for (std::uint32_t j = root; j < size && items_[j].distance <= distance + 2 * tolerance_; ++j)
+      if (items_[j].parent == root && is_at(corners(items_[j]), p)) return true;
     return false;
   }
 
