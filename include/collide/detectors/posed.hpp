@@ -68,11 +68,7 @@ class posed {
   /// After an exception there is no mesh, and it can be built again.
   /// \complexity O(triangles).
   /// \sync Waits.
-  void build(mesh_view<scalar> mesh, std::vector<body> const& bodies) {
-    begin_build(mesh, bodies);
-    for (part const& p : parts_) detectors_.emplace_back(space_, options_).build(mesh.subview(p.first, p.size));
-    is_built_ = true;
-  }
+  void build(mesh_view<scalar> mesh, std::vector<body> const& bodies) { build_each(mesh, bodies); }
 
   /// Indexes each body, for spheres of up to a radius; see `detector::build`.
   ///
@@ -81,9 +77,7 @@ class posed {
   /// \param radius  the largest usual radius, as for `detector::build`
   /// \throws error  as the other `build`, and if `radius` is negative or NaN
   void build(mesh_view<scalar> mesh, std::vector<body> const& bodies, scalar radius) {
-    begin_build(mesh, bodies);
-    for (part const& p : parts_) detectors_.emplace_back(space_, options_).build(mesh.subview(p.first, p.size), radius);
-    is_built_ = true;
+    build_each(mesh, bodies, radius);
   }
 
   /// As `detector::query`, of bodies that are where `poses` says.
@@ -131,7 +125,8 @@ class posed {
     int frame;
   };
 
-  void begin_build(mesh_view<scalar> mesh, std::vector<body> const& bodies) {
+  template <class... Radius>
+  void build_each(mesh_view<scalar> mesh, std::vector<body> const& bodies, Radius... radius) {
     is_built_ = false;
     detectors_.clear();
     bodies_.check(bodies, mesh.size(), nullptr, "posed");
@@ -139,6 +134,9 @@ class posed {
     mesh_ = mesh;
     divide(bodies);
     space_.fill(time_.reserve(space_.resource(), 1), 0, sizeof(double));
+    for (part const& p : parts_)
+      detectors_.emplace_back(space_, options_).build(mesh.subview(p.first, p.size), radius...);
+    is_built_ = true;
   }
 
   /// The parts of the mesh, in its order.

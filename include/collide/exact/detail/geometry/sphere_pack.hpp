@@ -23,17 +23,7 @@ struct sphere_pack {
   }
 
   /// Loads the swept bounding spheres of moving spheres.
-  COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
-    for (unsigned k = 0; k < Items; ++k) {
-      std::size_t const i = first + k;
-      bool const there = i < spheres.size();
-      sphere<S> const s = there ? swept_bounding_sphere(spheres[i]) : none();
-      x[k] = s.centre.x();
-      y[k] = s.centre.y();
-      z[k] = s.centre.z();
-      radius[k] = s.radius;
-    }
-  }
+  COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) { load_each(spheres, first); }
 
   COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
     if (first + Items <= spheres.size()) {
@@ -44,7 +34,7 @@ struct sphere_pack {
         for (unsigned k = 0; k < Items; ++k) radius[k] = spheres.radius(first + k);
       }
     } else {
-      load_tail(spheres, first);
+      load_each(spheres, first);
     }
   }
 
@@ -88,12 +78,13 @@ struct sphere_pack {
   }
 
  private:
-  /// Loads the spheres that exist of the last pack; the others are `none()`.
-  COLLIDE_HD_INLINE void load_tail(sphere_view<S> const& spheres, std::size_t first) {
+  /// Loads those that exist of a pack, which may be the last; the others are `none()`.
+  template <class Spheres>
+  COLLIDE_HD_INLINE void load_each(Spheres const& spheres, std::size_t first) {
     for (unsigned k = 0; k < Items; ++k) {
       std::size_t const i = first + k;
       bool const there = i < spheres.size();
-      sphere<S> const s = there ? spheres[i] : none();
+      sphere<S> const s = there ? swept_bounding_sphere(spheres[i]) : none();
       x[k] = s.centre.x();
       y[k] = s.centre.y();
       z[k] = s.centre.z();

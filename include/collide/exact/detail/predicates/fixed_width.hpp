@@ -33,6 +33,14 @@ COLLIDE_HD_INLINE void rotate(T (&x)[3]) {
   x[2] = first;
 }
 
+/// A vector of integers of two words.
+struct fixed_width_vector {
+  int_words<2> component[3];
+  friend COLLIDE_HD int_words<4> dot(fixed_width_vector const& p, fixed_width_vector const& q) {
+    return p.component[0] * q.component[0] + p.component[1] * q.component[1] + p.component[2] * q.component[2];
+  }
+};
+
 /// Finite coordinates and a finite radius, not below 0; differences of coordinates take two words of 64 bits.
 class fixed_width_predicate {
  public:
@@ -56,7 +64,7 @@ class fixed_width_predicate {
 
   /// True if the sphere touches the triangle; call it only if `fits()`.
   COLLIDE_HD_NOINLINE bool intersects() const {
-    vector v[3] = {corner_[0], corner_[1], corner_[2]};
+    fixed_width_vector v[3] = {corner_[0], corner_[1], corner_[2]};
     int_words<4> diagonal[3] = {}, off_diagonal[3] = {};  // m_ii, and m_ik for the next corner k, of each corner i
     int_words<4> const square = radius_ * radius_;
     COLLIDE_NO_UNROLL
@@ -90,10 +98,6 @@ class fixed_width_predicate {
   }
 
  private:
-  struct vector {
-    int_words<2> component[3];
-  };
-
   static constexpr int max_bits = 126;
   // guard: fixed-shift
   static constexpr int max_length = 126;  ///< of a number: a bit of two words is for differences, one for the sign
@@ -101,7 +105,7 @@ class fixed_width_predicate {
   int exponent_ = 1 << 30;  ///< as a power of two
   bool fits_ = true;
   int_words<2> radius_;
-  vector corner_[3] = {};  ///< relative to the centre
+  fixed_width_vector corner_[3] = {};  ///< relative to the centre
 
   COLLIDE_HD void lower_exponent(double x) {
     dyadic const d = decoded(x);
@@ -121,10 +125,6 @@ class fixed_width_predicate {
     constexpr uint128 limit = uint128{1} << max_bits;
     fits_ = fits_ && x + limit <= 2 * limit;  // from -limit to limit
     return {{static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(x >> 64)}};
-  }
-
-  static COLLIDE_HD int_words<4> dot(vector const& p, vector const& q) {
-    return p.component[0] * q.component[0] + p.component[1] * q.component[1] + p.component[2] * q.component[2];
   }
 };
 

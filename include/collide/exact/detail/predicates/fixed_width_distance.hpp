@@ -62,7 +62,7 @@ class fixed_width_distance {
   /// Call it only if all `fit()`.
   COLLIDE_HD_NOINLINE fixed_width_distance(fixed_width_units const& units, triangle<double> const& t,
                                            vec3<double> const& point) {
-    vector v[3];
+    fixed_width_vector v[3];
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 9; ++i) {
       vec3<double> const& corner = i < 3 ? t.a : (i < 6 ? t.b : t.c);
@@ -120,17 +120,9 @@ class fixed_width_distance {
   }
 
  private:
-  struct vector {
-    int_words<2> component[3];
-  };
-
   int foot_ = 0;
   int_words<12> square_{};  ///< of the distance, times `length_`
   int_words<8> length_{};   ///< not 0
-
-  static COLLIDE_HD int_words<4> dot(vector const& p, vector const& q) {
-    return p.component[0] * q.component[0] + p.component[1] * q.component[1] + p.component[2] * q.component[2];
-  }
 
   /// A number that is not negative, in more words.
   template <int N, int M>
