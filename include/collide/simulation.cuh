@@ -94,7 +94,7 @@ class simulation {
                 "ends: take karabassi, and steps in which nothing moves farther than its radius");
   static_assert(
       !(effects_type::any_mesh_contact || effects_type::overlaps) ||
-          detail::has_triangle_ref<typename broad_phase::template index<S>>::value,
+          detail::is_valid<detail::index_mesh_lookup, typename broad_phase::template index<S>>,
       "collide: effects that touch the mesh need a broad phase whose index has a member mesh_lookup(), such as "
       "bucket or all_pairs");
 

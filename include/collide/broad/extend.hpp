@@ -22,10 +22,7 @@ namespace collide {
 namespace detail {
 
 /// True for an index that is made of what the host alone can read.
-template <class Index, class = void>
-inline constexpr bool is_host_only = false;
-template <class Index>
-inline constexpr bool is_host_only<Index, std::void_t<decltype(Index::host_only)>> = Index::host_only;
+COLLIDE_MEMBER_OR(is_host_only, host_only, false)
 
 }  // namespace detail
 

@@ -88,11 +88,11 @@ class in_passes {
     if (passes_ == 0) throw error("collide: in_passes: query needs a mesh: call build before it");
     if (passes_ == 1) {
       detector_.query(spheres, sink);
-    } else if constexpr (detail::sink_joins_parts<std::remove_reference_t<Sink>>::value) {
+    } else if constexpr (detail::sink_joins_parts<std::remove_reference_t<Sink>>) {
       auto const search_parts = [this](spheres_type const& of, auto const& f) { search(of, f); };
       run(sink, detail::search_query<Detector, decltype(search_parts)>{spheres, search_parts});
     } else {
-      find(spheres, !detail::sink_keeps_ids_alone<std::remove_reference_t<Sink>>::value);
+      find(spheres, !detail::sink_keeps_ids_alone<std::remove_reference_t<Sink>>);
       hand_over(spheres, sink);
     }
     return std::forward<Sink>(sink);

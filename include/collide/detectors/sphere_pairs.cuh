@@ -145,7 +145,7 @@ class sphere_pairs {
   template <bool BothWays, class Sink>
   void run(sphere_view<Scalar> const& spheres, Sink& sink) {
     using pass = detail::sphere_pass<ExecutionSpace, Scalar, BothWays>;
-    static_assert(detail::sink_keeps_ids_alone<Sink>::value,
+    static_assert(detail::sink_keeps_ids_alone<Sink>,
                   "collide: sphere_pairs gives ids alone: its sinks are count, pairs, csr and any_hit");
     sink.run(space_, pass{space_, spheres, spheres, cells_.build(space_, spheres)});
   }

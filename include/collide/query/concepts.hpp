@@ -192,15 +192,9 @@ using sink_reserve =
     decltype(std::declval<Sink&>().reserve(std::declval<Space const&>(), std::size_t{}, std::size_t{}));
 
 /// True if a sink says that it keeps ids alone.
-template <class Sink, class = void>
-struct sink_keeps_ids_alone : std::false_type {};
-template <class Sink>
-struct sink_keeps_ids_alone<Sink, std::enable_if_t<Sink::keeps_ids_alone>> : std::true_type {};
+COLLIDE_MEMBER_OR(sink_keeps_ids_alone, keeps_ids_alone, false)
 
 /// True if a sink searches the parts of a mesh one after the other, and joins what it finds.
-template <class Sink, class = void>
-struct sink_joins_parts : std::false_type {};
-template <class Sink>
-struct sink_joins_parts<Sink, std::enable_if_t<Sink::joins_parts>> : std::true_type {};
+COLLIDE_MEMBER_OR(sink_joins_parts, joins_parts, false)
 
 }  // namespace collide::detail

@@ -104,7 +104,7 @@ class distributed {
         throw error("collide: distributed: the last build has failed on some rank: build before you query");
       }
       if (is_divided_ && ranks_.size() > 1) {
-        if constexpr (detail::sink_joins_parts<std::remove_reference_t<Sink>>::value) {
+        if constexpr (detail::sink_joins_parts<std::remove_reference_t<Sink>>) {
           search_divided(spheres, sink);
         } else {
           query_divided(spheres, sink);
@@ -155,7 +155,7 @@ class distributed {
   template <class Sink>
   void query_divided(spheres_type const& spheres, Sink& sink) {
     using narrow_phase = typename Detector::narrow_phase;
-    constexpr bool with_triangles = !detail::sink_keeps_ids_alone<std::remove_reference_t<Sink>>::value;
+    constexpr bool with_triangles = !detail::sink_keeps_ids_alone<std::remove_reference_t<Sink>>;
     remote_.find(ranks_, detector_, mesh_, spheres, chunk_, with_triangles);
     together(ranks_, [&] {
       found_.keep(detector_.space(), remote_.found(), remote_.size(), {mesh_.view(), {0, mesh_.numbers()}},

@@ -34,11 +34,11 @@ template <class Otherwise, bool Is, class T, class... More>
 struct first_of<Otherwise, choice<Is, T>, More...>
     : std::conditional_t<Is, std::enable_if<true, T>, first_of<Otherwise, More...>> {};
 
-/// Defines NAME<T>: the static MEMBER of T, or OTHERWISE if it has none.
-#define COLLIDE_MEMBER_OR(NAME, MEMBER, OTHERWISE) \
-  template <class T, class = void>                 \
-  inline constexpr auto NAME = OTHERWISE;          \
-  template <class T>                               \
-  inline constexpr auto NAME<T, std::void_t<decltype(T::MEMBER)>> = T::MEMBER;
+/// Defines NAME<T>, of the type of OTHERWISE: the static MEMBER of T, or that if it has none.
+#define COLLIDE_MEMBER_OR(NAME, MEMBER, OTHERWISE)       \
+  template <class T, class = void>                       \
+  inline constexpr decltype(OTHERWISE) NAME = OTHERWISE; \
+  template <class T>                                     \
+  inline constexpr decltype(OTHERWISE) NAME<T, std::void_t<decltype(T::MEMBER)>> = T::MEMBER;
 
 }  // namespace collide::detail

@@ -98,27 +98,17 @@ struct contact_columns_of<columns<C...>> {
   using type = contact_columns<C...>;
 };
 
-template <class L, class = void>
-inline constexpr bool has_stiffness_ratio = false;
+COLLIDE_MEMBER_OR(needs_hertz, needs_hertz, false)
+COLLIDE_MEMBER_OR(is_mutual_law, is_mutual, false)
 template <class L>
-inline constexpr bool has_stiffness_ratio<L, std::void_t<decltype(L::stiffness_ratio)>> = true;
-template <class L, class = void>
-inline constexpr bool needs_hertz = false;
-template <class L>
-inline constexpr bool needs_hertz<L, std::void_t<decltype(L::needs_hertz)>> = L::needs_hertz;
+using stiffness_ratio_member = decltype(L::stiffness_ratio);
 
 /// The stiffness of a tangential spring over that of the normal one; 0 of laws without such a member.
 template <class L>
 double stiffness_ratio_of([[maybe_unused]] L const& law) {
-  if constexpr (has_stiffness_ratio<L>)
-    return law.stiffness_ratio;
-  else
-    return 0;
+  if constexpr (is_valid<stiffness_ratio_member, L>) return law.stiffness_ratio;
+  return 0;
 }
-template <class L, class = void>
-inline constexpr bool is_mutual_law = false;
-template <class L>
-inline constexpr bool is_mutual_law<L, std::void_t<decltype(L::is_mutual)>> = L::is_mutual;
 
 /// Turns a vector of the plane of contact about the normal, by the mean spin of the two, by the tangent of half the
 /// angle: it keeps its length.

@@ -38,10 +38,7 @@ struct end_pass_kernel {
 };
 
 /// True for outputs of which `store` takes the ids of a hit, a `pair`, alone.
-template <class Output, class = void>
-inline constexpr bool stores_ids = false;
-template <class Output>
-inline constexpr bool stores_ids<Output, std::void_t<decltype(Output::stores_ids)>> = Output::stores_ids;
+COLLIDE_MEMBER_OR(stores_ids, stores_ids, false)
 
 /// True if one hit of each sphere is enough, as the output says; most outputs want them all.
 template <class Output>

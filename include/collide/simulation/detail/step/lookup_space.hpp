@@ -2,9 +2,6 @@
 /// How a simulation uses a broad phase: it asks for the triangles near single spheres.
 #pragma once
 
-#include <type_traits>
-#include <utility>
-
 #include <collide/spaces/detail/tuning.hpp>
 
 namespace collide {
@@ -18,11 +15,6 @@ struct lookup_space : Space {};
 
 template <class Space>
 inline constexpr bool serves_steps<lookup_space<Space>> = true;
-
-template <class Index, class = void>
-struct has_triangle_ref : std::false_type {};
-template <class Index>
-struct has_triangle_ref<Index, std::void_t<decltype(std::declval<Index const&>().mesh_lookup())>> : std::true_type {};
 
 }  // namespace detail
 
