@@ -1,6 +1,6 @@
 /// \file
 /// Markers of functions and loops for host and device: the only macros of the library, except for those of version.hpp,
-/// compiled.hpp and simulation/detail/step/compiled_search.hpp.
+/// compiled.hpp, core/detail/detected.hpp and simulation/detail/step/compiled_search.hpp.
 #pragma once
 
 #include <collide/core/version.hpp>
