@@ -1,54 +1,10 @@
 /// \file
 /// The interface of effects: what happens to a particle in a step of a simulation.
 ///
-/// An effect is a small copyable struct with its parameters. It names the columns that it works on,
-///
-///     using reads = columns<...>;            // optional: columns that it looks at
-///     using writes = columns<...>;           // optional: columns that it changes (and may look at)
-///     using optional_writes = columns<...>;  // optional: columns that it changes where other effects name them
-///     using optional_reads = columns<...>;   // optional: columns that it looks at where other effects name them
-///     using runs_after = effects<...>;       // optional: effects that must come before it in the scene's list
-///     using remembers = contact_columns<...>;  // optional: what each contact keeps from step to step
-///
-/// and has one or more of these members, each `COLLIDE_HD`, const, and a template over the type of the particle:
-///
-/// - `is_inactive(particle)`, called first: true if nothing happens to the particle in this step.
-/// - `accelerate(particle&, dt)`, before positions move: changes the velocity.
-/// - `on_mesh_contact(particle&, mesh_contact&, dt)`, for each contact with the mesh: the deepest first, of swept
-///   particles the earliest.
-/// - `after_mesh_contact(particle&, mesh_contact&, dt)`, for the same contact, after the `on_mesh_contact` of all
-///   effects.
-/// - `on_mesh_impulse(particle&, mesh_impulse const&, dt)`, for all that the mesh gives to a particle: of each contact
-///   what all effects have changed, of what `adhesion` holds or what sleeps what the mesh holds it against.
-/// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it, with what effects before
-///   it in the list have changed of the particle. Only with such an effect are neighbours listed.
-/// - `on_mesh_overlap(particle&, self, mesh_overlap const&, dt)`, for each point of the mesh that a particle presses
-///   on, when particles meet: forces that grow with the overlap, in place of the impulses of `on_mesh_contact`.
-/// - With `remembers`, these two get what the contact remembers before `dt`, and return true if the contact goes on:
-///   `memory[column{}]` is a value, which begins as a particle's would, and `memory.elapsed()` the time since the
-///   contact was looked at before. `on_pair_contact` is then called as long as the contact goes on, also of particles
-///   that no longer overlap.
-/// - `try_wake(particle&, other)`, for each other particle that is active and overlaps it, also if it is not.
-/// - `holds(particle const&, pull, dt)`: true if the mesh holds a particle that is `adhered` against a change of its
-///   velocity by `pull`, relative to the surface, in a step.
-/// - `end_step(particle&, dt)`, at the end of the step.
-///
-/// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
-/// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense;
-/// `longest_step(smallest_radii const&) const`, or of a number, the smallest radius of all: `error` beyond it. One
-/// whose parameters have pointers says `static constexpr bool saves_parameters = false`; one with padding between them
-/// has `for_each_part(f)`, which calls f with each of them; see checkpoint.hpp. One whose `begin_step` does the same to
-/// particles wherever they are says `static constexpr bool begins_on_ranks = true`; see distributed_simulation.cuh. One
-/// with `static constexpr bool asks_forces = true` has `end_step(particle&, forces, dt)` instead: `forces.change(dt)`
-/// is by how much `accelerate` of all effects changes the velocity. One that makes the mesh solid says `static
-/// constexpr bool repels = true`. One that looks at what others do between particles says `static constexpr bool
-/// follows_pair_contacts = true`: in a list it comes behind them, and is called for contacts that they keep up apart.
-/// `on_pair_contact` is called before the other members but `begin_step`, with `velocity_verlet` when all particles
-/// have moved: `self` and `other` are as they were then. What changes is `particle`, so that both of a pair see the
-/// same.
-///
-/// `accelerate` of every effect is called once more for each contact with the mesh, on a copy of the particle, to learn
-/// `mesh_contact::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
+/// An effect is a small copyable struct with its parameters. docs/development/extending.md lists its members and when
+/// they are called: the columns that it works on, such as `reads` and `writes`; those for each particle, from
+/// `is_inactive` to `end_step`, each `COLLIDE_HD`, const, and a template over the type of the particle; and those on the
+/// host, `begin_step`, `check_parameters` and `longest_step`.
 ///
 /// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
 /// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. An effect
