@@ -1,15 +1,6 @@
 /// \file
 /// Bounds of the distance of a triangle from a point, in doubles: the filter of the search for the nearest triangle.
-///
-/// Errors are bounded in terms of u = 2^-53, of M, the largest coordinate of a corner as seen from the point, and of L,
-/// the largest coordinate of an edge. Corners as seen from the point have an error of u M, edges of u L. Then
-///   - d1 .. d6, products of an edge and a corner, have an error below 16 u L M, as |d| <= 3 L M;
-///   - va, vb and vc, differences of two products of these, have one below 256 u L^2 M^2;
-///   - the point `q`, a convex combination of the corners, is within 34 u M of a point of the triangle, and its length
-///     is computed to within 14 u M, so the triangle is not farther than that length and 64 u M;
-///   - along any direction g of length 1 no point of the triangle is nearer than the least v.g, which is computed to
-///     within 20 u M, so the triangle is not nearer than that less 64 u M.
-/// The last two hold whatever q and g are, so they need no proof that the feature found is the right one.
+/// They hold whichever feature was found; docs/development/numerics.md ("The nearest triangle") derives the errors.
 #pragma once
 
 #include <collide/core/contact.hpp>

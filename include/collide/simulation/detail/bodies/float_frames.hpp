@@ -1,22 +1,7 @@
 /// \file
 /// A quick test of several particles that rest whether they may touch a body: in the coordinates' own precision, with a
 /// bound on how far the place that it finds in a body's frame is from the one that contacts are computed with.
-///
-/// Proof of the bound. Let u be the unit roundoff of the scalar and d = 2^-53 that of double, A the linear map of
-/// a body's unit quaternion, P its position, c the centre of its bounding sphere as `body_frame` has it, x a particle's
-/// centre, v = x - c, and m = A (c - P). Contacts are computed at p, which is A (x - P) in double, rounded. A's formula
-/// has fewer than 32 roundings that matter, so |p - A (x - P)| <= 32 d (|v| + |m|) + u (|v| + |m|). The quick place is
-/// q = R (x - c) + s in the scalar: R is A's matrix, whose elements have errors below 5 d before they are rounded, and
-/// s is m, computed as p is. With |R|, the matrix of absolute values, at most sqrt(3) long:
-///   - rounding x - c, R and s costs u |v|, (sqrt(3) u + 12 d) |v| and (u + 32 d) |m|;
-///   - three products and three sums, fused or not, cost 4 u (sqrt(3) |v| + |m|).
-/// In all |q - p| <= u (11 |v| + 6 |m|) + d (44 |v| + 64 |m|), to first order, and that is below
-/// `float_frame_error` (|v| + |m|). The position of the body is not in it: only its place in its own frame is.
-///
-/// If a sphere of radius r touches a triangle at p, one of radius r + |q - p| does at q. So it is in a cell that has
-/// triangles if the grid serves spheres of that radius: grids of scenes with bodies have that much `margin`. Of
-/// particles that are not far, |v| <= (1 + 2e-5) (reach + r). That, what is above the first order, and the rounding of
-/// the radius that the grid is made for take less than the 5 u by which `float_frame_error` exceeds 11 u.
+/// The bound: docs/development/numerics.md ("Spheres beside a body").
 #pragma once
 
 #include <cstdint>
