@@ -15,10 +15,7 @@
 namespace collide {
 
 /// By how much the mesh has changed a particle's velocity in the step, by the contacts before; see `wear`.
-struct worn_by {
-  template <class S>
-  using value = vec3<S>;
-};
+struct worn_by : detail::vector_column {};
 
 /// The load of a triangle, as `wear_sums` reads it.
 struct triangle_load {

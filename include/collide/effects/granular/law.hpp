@@ -65,10 +65,7 @@ struct normal_force {
 };
 
 /// The radius of the area of contact when the contact was looked at before.
-struct contact_radius {
-  template <class S>
-  using value = S;
-};
+struct contact_radius : detail::number_column {};
 
 /// In place of a law: no force, no torque, nothing that is remembered.
 struct none {

@@ -8,10 +8,7 @@ namespace collide {
 
 /// By how much the surfaces of a contact have moved against each other since they touched, a length: the tangential
 /// spring.
-struct tangential_displacement {
-  template <class S>
-  using value = vec3<S>;
-};
+struct tangential_displacement : detail::vector_column {};
 
 /// Which of the dashpot's forms codes have.
 enum class tangential_damping {

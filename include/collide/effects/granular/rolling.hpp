@@ -7,10 +7,7 @@
 namespace collide {
 
 /// The torque of the spring that resists rolling.
-struct rolling_torque {
-  template <class S>
-  using value = vec3<S>;
-};
+struct rolling_torque : detail::vector_column {};
 
 /// A torque of constant size against what turns, model A of J. Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi, Powder
 /// Technology 206, 2011: rolling friction times R* times the elastic force, without what cohesion takes from it. What

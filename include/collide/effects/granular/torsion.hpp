@@ -7,10 +7,7 @@
 namespace collide {
 
 /// The angle by which a contact is twisted: the spring that resists torsion.
-struct twist_angle {
-  template <class S>
-  using value = S;
-};
+struct twist_angle : detail::number_column {};
 
 namespace detail {
 
