@@ -3,8 +3,8 @@
 ///
 /// An effect is a small copyable struct with its parameters. docs/development/extending.md lists its members and when
 /// they are called: the columns that it works on, such as `reads` and `writes`; those for each particle, from
-/// `is_inactive` to `end_step`, each `COLLIDE_HD`, const, and a template over the type of the particle; and those on the
-/// host, `begin_step`, `check_parameters` and `longest_step`.
+/// `is_inactive` to `end_step`, each `COLLIDE_HD`, const, and a template over the type of the particle; and those on
+/// the host, `begin_step`, `check_parameters` and `longest_step`.
 ///
 /// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
 /// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. An effect

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <collide/core/detail/detected.hpp>
 #include <collide/core/memory.hpp>
 #include <collide/effects/detail/column_list.hpp>
 #include <collide/exact/detail/numeric/pack.hpp>

@@ -2,9 +2,9 @@
 /// A sphere and a triangle in integers of fixed width: the last stage of the predicate, for numbers whose exponents are
 /// not too far apart.
 ///
-/// With the corners v_i relative to the centre, m_ik = v_i.v_k - R^2, and w_i the sum of row i of the adjugate of m, the
-/// two touch if m_ii <= 0 for a corner; if m_ik < 0 and m_ii m_kk <= m_ik^2 for an edge; or if w_i > 0 for all three, and
-/// det m <= 0. docs/development/numerics.md has the proof, and that nothing overflows.
+/// With the corners v_i relative to the centre, m_ik = v_i.v_k - R^2, and w_i the sum of row i of the adjugate of m,
+/// the two touch if m_ii <= 0 for a corner; if m_ik < 0 and m_ii m_kk <= m_ik^2 for an edge; or if w_i > 0 for all
+/// three, and det m <= 0. docs/development/numerics.md has the proof, and that nothing overflows.
 #pragma once
 
 #include <collide/exact/detail/numeric/exact_number.hpp>
