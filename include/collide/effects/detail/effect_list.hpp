@@ -7,6 +7,7 @@
 #include <collide/effects/detail/effect_traits.hpp>
 #include <collide/effects/detail/resistance.hpp>
 #include <collide/exact/detail/numeric/repeating_box.hpp>
+#include <collide/spaces/detail/multiversion.hpp>
 
 namespace collide::detail {
 
