@@ -1,16 +1,11 @@
 /// \file
 /// Buckets the other way round, for a CPU and many spheres: the spheres are sorted into the cells, and the triangles
-/// look for them there.
+/// look for them there; docs/development/design.md, "On the host, triangles look for spheres".
 ///
-/// The cells are those of broad/detail/grid/grid.hpp, and a triangle looks into those that it would be entered into, so
-/// the same pairs meet, each once. But nothing is entered: a bit per cell is all that is prepared. Most spheres are in
-/// cells that no triangle touches, and are sorted out at the pace of the memory; the few others are copied in the order
-/// of the cells. Neighbouring triangles, which most meshes have one after the other, then read the same spheres from
-/// the nearest cache.
-///
-/// Spheres that move go the same way as the bounding spheres of their paths, which are spheres at rest; the narrow
-/// phase then judges the spheres themselves. That is for short paths: the bounding sphere of a long one touches much
-/// that the sphere does not.
+/// A triangle looks into the cells that it would be entered into, so the same pairs meet, each once. Spheres that move
+/// go the same way as the bounding spheres of their paths, which are spheres at rest; the narrow phase then judges the
+/// spheres themselves. That is for short paths: the bounding sphere of a long one touches much that the sphere does
+/// not.
 #pragma once
 
 #include <cmath>

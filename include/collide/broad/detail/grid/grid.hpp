@@ -1,28 +1,13 @@
 /// \file
-/// The uniform grids of the `bucket` broad phase.
+/// The uniform grids of the `bucket` broad phase; docs/development/design.md says what keeps them from collapsing.
 ///
 /// Every triangle, dilated by the reach (the largest radius asked for) and a slack for rounding, is put into the cells
-/// that it meets; a sphere then looks into the one cell that holds its centre. No pair can appear twice, and the
-/// spheres need no sorting.
-///
-/// Measures that keep the grid from collapsing:
-///   - A cost model. The width is the one where entering the triangles and testing the candidates cost least together;
-///     plan.hpp. Triangles are entered only into cells that they meet themselves; triangle_cells.hpp.
-///   - Two levels, where that costs less: triangles much larger than the rest go to wider cells; a sphere looks into
-///     one cell per level.
-///   - Wrapping. A level has a fixed number of cells; where the scene has more, cell coordinates wrap around (modulo a
-///     power of two). Triangles from far away then share a cell: more candidates, no wrong answer.
-///   - Several grids, where radii differ much: each serves the spheres of one range of radii.
+/// that it meets; a sphere then looks into the one cell that holds its centre. That no pair is lost, and none appears
+/// twice: docs/development/numerics.md, "The grid".
 ///
 /// An entry is the number of a triangle. Beside it is which part of the cell the triangle's box covers, to a fifteenth
 /// of the cell's width, so that most triangles of a cell that are not near a sphere in it are left out before anything
 /// else of them is read.
-///
-/// The rounding: cell coordinates are floor((x - lower) * inverse_width), a monotone function, so rounding alone cannot
-/// separate a centre from a box that contains it; nor from the part of a cell that it covers. The slack of 64 units in
-/// the last place of the largest coordinate covers the rounding of the box itself and a compiler that reassociates. The
-/// reach is dilated by 4 units of float too, the coarsest arithmetic of a narrow phase, so that none of its hits is
-/// lost here, right or wrong. See docs/development/numerics.md.
 #pragma once
 
 #include <cstdint>

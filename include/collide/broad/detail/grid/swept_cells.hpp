@@ -1,17 +1,12 @@
 /// \file
-/// The path of a moving sphere's centre through a grid.
+/// The path of a moving sphere's centre through a grid: docs/development/design.md, "Moving spheres", and R17 of
+/// numerics.md.
 ///
-/// If the sphere touches a triangle at some time, the centre is then in a cell that lists the triangle. So all cells
-/// of the path are looked into: the path is cut into pieces half as long as a cell is wide, and the box of a piece,
-/// with some slack for rounding, touches a few cells. (Most paths are short, and are one piece.) A triangle may be
-/// listed in several of these; it counts in the first of them only, which is found without memory: the boxes of pieces
-/// move in one direction on each axis, so the pieces whose cells a triangle shares follow each other. Of a path that is
-/// one piece it is known which part of each cell its box covers; if that meets a triangle's part of any cell, it does
-/// so in the first.
+/// Which piece of the path is the first to share a cell with a triangle is found without memory: the boxes of pieces
+/// move in one direction on each axis, so the pieces whose cells a triangle shares follow each other.
 #pragma once
 
 #include <collide/broad/detail/grid/grid.hpp>
-#include <collide/exact/detail/geometry/closest_point.hpp>
 
 namespace collide::detail {
 

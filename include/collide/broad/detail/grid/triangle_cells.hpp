@@ -3,12 +3,8 @@
 /// into rows along x, and what is in a row spans a run of cells.
 ///
 /// A slab that is beyond the triangle meets only what is within the rest of the reach there, as Pythagoras has it. So
-/// the corners of the dilated box are left out, too, where cells are small against the reach.
-///
-/// The rounding: a cut errs by at most 16 units in the last place of the farthest coordinate, in every coordinate of
-/// the points that it makes, and a slab's ends by at most as much. What has been cut wrongly by e is still all there
-/// within e, if the next slab is wider by e. Four cuts and the ends are 80 units; the reach is wider by 256. See
-/// docs/development/numerics.md.
+/// the corners of the dilated box are left out, too, where cells are small against the reach. The rounding:
+/// docs/development/numerics.md, R11.
 #pragma once
 
 #include <cstdint>
