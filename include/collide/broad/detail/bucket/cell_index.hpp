@@ -2,7 +2,6 @@
 /// Spheres that look into cells: the grids of a mesh are planned for spheres, and filled with its triangles.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -162,8 +161,8 @@ class cell_index {
   int max_grid_count(std::size_t spheres) const {
     if (bucket_tuning<Space>::bins_spheres) return max_grids;
     if (serves_steps<Space> || spheres <= fewest_of_grid()) return 1;
-    int const most = mesh_.size() > max_without_readback ? max_grids : grids_without_readback;
-    return static_cast<int>(min<std::size_t>(1 + spheres / fewest_of_grid(), static_cast<std::size_t>(most)));
+    int const max_count = mesh_.size() > max_without_readback ? max_grids : grids_without_readback;
+    return static_cast<int>(min<std::size_t>(1 + spheres / fewest_of_grid(), static_cast<std::size_t>(max_count)));
   }
 
   /// Makes grids, as many as the budget allows, for these spheres, of which `all` are to come; `anew` if those that are

@@ -9,7 +9,6 @@
 #include <collide/broad/detail/grid/grid_ref.hpp>
 #include <collide/broad/detail/grid/occupancy.hpp>
 #include <collide/broad/detail/grid/swept_cells.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
 
 namespace collide::detail {

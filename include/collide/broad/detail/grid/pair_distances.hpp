@@ -2,8 +2,6 @@
 /// How far spheres and triangles are apart: of how many pairs a grid with cells of some width makes candidates.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 
 #include <collide/core/moving_spheres.hpp>

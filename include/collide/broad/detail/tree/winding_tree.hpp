@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
 #include <collide/broad/detail/tree/curve_order.hpp>
 #include <collide/narrow/detail/normal_moments.hpp>
