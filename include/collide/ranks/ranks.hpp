@@ -27,8 +27,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <collide/core/detail/detected.hpp>
 #include <collide/core/error.hpp>
-#include <collide/query/concepts.hpp>
 
 namespace collide {
 

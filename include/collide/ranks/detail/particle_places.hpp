@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 #include <collide/effects/detail/effect_list.hpp>
 #include <collide/exact/detail/numeric/float_bits.hpp>
