@@ -3,7 +3,6 @@
 /// time.
 #pragma once
 
-#include <limits>
 #include <type_traits>
 
 #include <collide/effects/detail/particle_access.hpp>

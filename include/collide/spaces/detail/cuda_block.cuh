@@ -12,8 +12,6 @@
 #include <cub/block/block_reduce.cuh>
 #include <cub/block/block_scan.cuh>
 
-#include <collide/core/config.hpp>
-
 namespace collide::detail {
 
 inline constexpr int threads_per_block = 256;  ///< threads of a block, in every kernel

@@ -4,7 +4,6 @@
 
 #include <collide/exact/detail/numeric/float_bits.hpp>
 #include <collide/exact/detail/numeric/rounding.hpp>
-#include <collide/mesh.hpp>
 
 namespace collide::detail {
 

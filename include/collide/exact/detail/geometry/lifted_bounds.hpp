@@ -10,6 +10,7 @@
 
 #include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/exact/detail/geometry/sphere_pack.hpp>
+#include <collide/mesh.hpp>
 
 namespace collide::detail {
 

@@ -10,7 +10,6 @@
 #include <collide/simulation/detail/bodies/bodies_ref.hpp>
 #include <collide/simulation/detail/step/contact_history.hpp>
 #include <collide/simulation/detail/step/surface_at_rest.hpp>
-#include <collide/spaces/detail/atomic.hpp>
 #include <collide/spaces/detail/block.hpp>
 
 namespace collide::detail {

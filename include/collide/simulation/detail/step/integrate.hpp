@@ -9,7 +9,6 @@
 #include <collide/broad/detail/grid/grid_ref.hpp>
 #include <collide/simulation/detail/step/mesh_ledger.hpp>
 #include <collide/spaces/detail/block.hpp>
-#include <collide/spaces/detail/multiversion.hpp>
 
 // the numbers of elements of small arrays are int
 #pragma GCC diagnostic push

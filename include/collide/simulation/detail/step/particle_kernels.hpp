@@ -7,7 +7,6 @@
 #include <collide/effects/detail/particle.hpp>
 #include <collide/simulation/detail/step/integrate.hpp>
 #include <collide/simulation/detail/step/mesh_contact.hpp>
-#include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {

@@ -13,6 +13,7 @@
 
 #include <collide/simulation/detail/step/contact_response.hpp>
 #include <collide/simulation/detail/step/integrate.hpp>
+#include <collide/spaces/detail/multiversion.hpp>
 
 namespace collide::detail {
 

@@ -2,8 +2,6 @@
 /// The context of a step: all that its parts share.
 #pragma once
 
-#include <cstddef>
-
 #include <collide/effects/detail/effect_list.hpp>
 #include <collide/narrow/detail/traits.hpp>
 #include <collide/simulation/detail/bodies/bodies_ref.hpp>
