@@ -94,9 +94,9 @@ struct moving_clump {
     });
     for_each_supported([&](sphere_type& p, S mass) {
       vec3<S> const none(S(0), S(0), S(0)), about = torque + cross(rest, arm(p.number));
-      auto const tell = [&](vec3<S> const& mean, S part, id body) {
-        mesh_impulse<S> const given{mean * time + rest * part,
-                                    about * (part / (S(0.4) * p.the_radius * p.the_radius)),
+      auto const tell = [&](vec3<S> const& mean, S fraction, id body) {
+        mesh_impulse<S> const given{mean * time + rest * fraction,
+                                    about * (fraction / (S(0.4) * p.the_radius * p.the_radius)),
                                     p[position{}],
                                     none,
                                     p[velocity{}],
