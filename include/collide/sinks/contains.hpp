@@ -27,8 +27,9 @@ class ray_parity {
   /// difference.
   COLLIDE_HD bool consider(triangle<S> const& t) {
     if (done_ || !box_meets_ray(t) || !is_finite(t)) return !done_;
-    bool on_line;
-    ray_crossing const crossing = cross(t, on_line);
+    bool on_line = false;
+    ray_crossing crossing;
+    if (!cross_ray_in_double(t, point_, crossing)) crossing = cross(t, on_line);
     if (crossing == ray_crossing::above) odd_ = !odd_;
     // guard: ray-surface
     if (crossing == ray_crossing::at_point || (on_line && intersects_exact(t, sphere<S>{point_, 0}).hit))

@@ -17,15 +17,6 @@ struct distance_bounds {
   bool certain;      ///< the closest point is that foot
 };
 
-/// Widened where the numbers are normal; subnormal numbers may be flushed to zero.
-template <class S>
-COLLIDE_HD_INLINE vec3<double> difference_in_double(vec3<S> const& to, vec3<S> const& from) {
-  vec3<double> d;
-  COLLIDE_UNROLL
-  for (int k = 0; k < 3; ++k) d[k] = opaque_value(static_cast<double>(to[k]) - static_cast<double>(from[k]));
-  return d;
-}
-
 /// Corner `i`, from 0 to 2.
 template <class S>
 COLLIDE_HD_INLINE vec3<S> corner_of(triangle<S> const& t, int i) {

@@ -97,12 +97,6 @@ struct alignas(32) tree_boxes {
     return x * x + (y * y + z * z);
   }
 
-  /// True if box k and another have no point in common.
-  COLLIDE_HD_INLINE bool is_apart(int k, tree_point const& other) const {
-    return (lower[0][k] > other.upper[0]) | (upper[0][k] < other.lower[0]) | (lower[1][k] > other.upper[1]) |
-           (upper[1][k] < other.lower[1]) | (lower[2][k] > other.upper[2]) | (upper[2][k] < other.lower[2]);
-  }
-
   /// Boxes for arithmetic: on a device a copy in registers, loaded 16 bytes at a time, as each thread reads another
   /// node.
 #if defined(__CUDA_ARCH__)
@@ -168,20 +162,25 @@ struct tree_node : tree_boxes {
     return all;
   }
 
-  /// Bit k: box k is within a distance, given as its square. Without branches, for the processor's vector unit.
+  /// Bit k: box k is within a distance, given as its square.
   COLLIDE_HD_INLINE std::uint32_t reached(tree_point const& p, float reach_squared) const {
     auto const& boxes = in_registers();
-    std::uint32_t mask = 0;
-    for (int k = 0; k < width; ++k) mask |= boxes.distance_squared(k, p) <= reach_squared ? bit(k) : 0u;
-    return mask & there;
+    return mask_of([&](int k) { return boxes.distance_squared(k, p) <= reach_squared; }) & there;
   }
 
   /// Bit k: box k and another have a point in common; see `overlap`.
   COLLIDE_HD_INLINE std::uint32_t overlapping(tree_point const& other) const {
     auto const& boxes = in_registers();
-    std::uint32_t mask = 0;
-    for (int k = 0; k < width; ++k) mask |= boxes.is_apart(k, other) ? 0u : bit(k);
-    return mask & there;
+    float const x = other.lower[0], y = other.lower[1], z = other.lower[2], x_end = other.upper[0],
+                y_end = other.upper[1], z_end = other.upper[2];
+    return ~mask_of([&](int k) {
+      float apart = select(boxes.lower[0][k] > x_end, 1.0f, 0.0f);
+      apart = select(boxes.upper[0][k] < x, 1.0f, apart);
+      apart = select(boxes.lower[1][k] > y_end, 1.0f, apart);
+      apart = select(boxes.upper[1][k] < y, 1.0f, apart);
+      apart = select(boxes.lower[2][k] > z_end, 1.0f, apart);
+      return select(boxes.upper[2][k] < z, 1.0f, apart) > 0;
+    }) & there;
   }
 
   /// The squared distances of boxes as numbers that sort like them, rounded down so far that rounding cannot make one
@@ -214,13 +213,17 @@ struct tree_node : tree_boxes {
   static constexpr std::uint32_t none = 0xffffffffu;
 
  private:
-  static COLLIDE_HD_INLINE std::uint32_t bit(int k) {
+  /// Bit k: f(k) holds. In lanes of the processor's vector unit, which g++ uses where the bits are no constants.
+  template <class F>
+  static COLLIDE_HD_INLINE std::uint32_t mask_of(F const& f) {
+    std::uint32_t mask = 0;
 #if defined(__CUDA_ARCH__)
-    return 1u << k;
+    for (int k = 0; k < width; ++k) mask |= f(k) ? 1u << k : 0u;
 #else
-    constexpr std::uint32_t bits[width] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
-    return bits[k];
+    std::uint32_t const bits[width] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
+    for (int k = 0; k < width; ++k) mask |= f(k) ? bits[k] : 0u;
 #endif
+    return mask;
   }
 };
 

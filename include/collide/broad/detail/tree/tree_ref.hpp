@@ -200,7 +200,7 @@ struct tree_ref {
     if (nodes == nullptr || !is_finite(point)) return;
     tree_point ray(point, tree_origin(mesh));
     ray.upper[2] = std::numeric_limits<float>::infinity();
-    for_each_overlapping(ray, f);
+    multiversioned([&] { for_each_overlapping(ray, f); });
   }
 
   /// Calls f(triangle) for all triangles whose box overlaps another, as long as that returns true. There is a tree.

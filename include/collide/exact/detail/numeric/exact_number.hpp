@@ -112,6 +112,15 @@ template <class S>
 COLLIDE_HD inline triangle<double> widened(triangle<S> const& t) {
   return {widened(t.a), widened(t.b), widened(t.c)};
 }
+/// Widened where the numbers are normal; subnormal numbers may be flushed to zero.
+template <class S>
+COLLIDE_HD_INLINE vec3<double> difference_in_double(vec3<S> const& to, vec3<S> const& from) {
+  vec3<double> d;
+  COLLIDE_UNROLL
+  for (int k = 0; k < 3; ++k) d[k] = opaque_value(static_cast<double>(to[k]) - static_cast<double>(from[k]));
+  return d;
+}
+
 template <class S>
 COLLIDE_HD inline sphere<double> widened(sphere<S> const& s) {
   return {widened(s.centre), widened(s.radius)};

@@ -15,6 +15,32 @@ namespace collide::detail {
 /// The place where the ray crosses a triangle: nowhere, above its beginning, or there.
 enum class ray_crossing { none, above, at_point };
 
+/// Decides as `cross_ray` does, in doubles, unless the ray passes near an edge or begins near the triangle: false then.
+/// With M the largest coordinate of a corner as seen from the point, corners have
+/// an error of u M, sides one below 16 u M^2, and the height, a sum of sides times coordinates, one below 128 u M^3.
+template <class S>
+COLLIDE_HD_INLINE bool cross_ray_in_double(triangle<S> const& t, vec3<S> const& p, ray_crossing& crossing) {
+  constexpr double u = ieee_traits<double>::unit_roundoff, smallest = 0x1p-70;  // subnormal numbers may be flushed
+  vec3<double> const a = difference_in_double(t.a, p), b = difference_in_double(t.b, p),
+                     c = difference_in_double(t.c, p);
+  double const size = max(max(max_norm(a), max_norm(b)), max_norm(c));
+  auto const side = [](vec3<double> const& v, vec3<double> const& w) {
+    return mul_rn(v.x(), w.y()) - mul_rn(v.y(), w.x());
+  };
+  double const ab = side(a, b), bc = side(b, c), ca = side(c, a), least = min(min(ab, bc), ca),
+               most = max(max(ab, bc), ca), error = mul_rn(16 * u, mul_rn(size, size));
+  if (!(size >= smallest && size <= 0x1p140)) return false;
+  crossing = ray_crossing::none;
+  // guard: ray-sides
+  if (least < -error && most > error) return true;
+  if (!(least > error || most < -error)) return false;
+  double const height = mul_rn(bc, a.z()) + mul_rn(ca, b.z()) + mul_rn(ab, c.z()), along = least > 0 ? height : -height;
+  // guard: ray-along
+  double const height_error = mul_rn(mul_rn(8.0, error), size);
+  if (along > height_error) crossing = ray_crossing::above;
+  return along > height_error || along < -height_error;
+}
+
 COLLIDE_HD inline int sign_of(double x) { return x < 0 ? -1 : (x > 0 ? 1 : 0); }
 
 /// The sign of (b - a) x (d - c), each component a difference of finite doubles: exactly.
