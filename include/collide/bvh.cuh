@@ -60,17 +60,22 @@ struct tree_policy {
 
     /// An order of many points in which neighbours search the same nodes; null where the one that they have will do.
     template <class Space>
-    id const* search_order([[maybe_unused]] Space& space, [[maybe_unused]] sphere_view<S> const& spheres) {
-      if constexpr (!bvh_tuning<Space>::divides_by_area) {
-        if (spheres.size() >= bvh_tuning<Space>::min_sorted_points)
-          return points_.sort(space, spheres, radix_.summary());
+    id const* search_order(Space& space, sphere_view<S> const& spheres) {
+      if (spheres.size() < bvh_tuning<Space>::min_sorted_points) return nullptr;
+      if constexpr (bvh_tuning<Space>::divides_by_area) {
+        bool const is_large = has_tree_ && mesh_.size() >= bvh_tuning<Space>::min_triangles_to_sort;
+        return is_large ? on_curve_.sort(space, spheres, nodes_.data()->box(), tree_origin(mesh_)) : nullptr;
+      } else {
+        return points_.sort(space, spheres, radix_.summary());
       }
-      return nullptr;
     }
     template <class Space>
-    void reserve([[maybe_unused]] Space& space, [[maybe_unused]] std::size_t spheres) {
-      if constexpr (!bvh_tuning<Space>::divides_by_area) {
-        if (spheres >= bvh_tuning<Space>::min_sorted_points) points_.reserve(space, spheres);
+    void reserve(Space& space, std::size_t spheres) {
+      if (spheres < bvh_tuning<Space>::min_sorted_points) return;
+      if constexpr (bvh_tuning<Space>::divides_by_area) {
+        on_curve_.reserve(space, spheres);
+      } else {
+        points_.reserve(space, spheres);
       }
     }
 
@@ -84,6 +89,7 @@ struct tree_policy {
     sah_tree<S> divided_;
     radix_tree<S> radix_;
     point_order<S> points_;
+    points_on_curve<S> on_curve_;
     winding_tree<S> windings_;
   };
 };

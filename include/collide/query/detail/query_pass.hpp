@@ -120,6 +120,10 @@ struct search_of_sphere {
 
   COLLIDE_HD void operator()(std::size_t k) const {
     std::size_t const i = order != nullptr ? order[k] : k;
+#if !defined(__CUDA_ARCH__)
+    constexpr std::size_t ahead = 16;
+    if (order != nullptr && k + ahead < spheres.size()) __builtin_prefetch(spheres.centres().address(order[k + ahead]));
+#endif
     sphere<S> const own = spheres[i];
     f(i, own, mesh, mesh_search<S, Ref>{ref, own.centre});
   }

@@ -51,9 +51,10 @@ struct bvh_tuning {
   /// True if triangles are divided by the areas of boxes, which takes longer and finds faster than to sort them, and is
   /// for hosts. Needs memory that the host can access.
   static constexpr bool divides_by_area = Space::host_accessible;
-  /// How many points are sorted before they search a tree that was not divided by area, so that neighbours search the
-  /// same nodes.
-  static constexpr std::size_t min_sorted_points = Space::host_accessible ? ~std::size_t{0} : std::size_t{1} << 18;
+  /// How many points are sorted before they search a tree, so that neighbours search the same nodes; on the host, of a
+  /// mesh of how many triangles.
+  static constexpr std::size_t min_sorted_points = std::size_t{1} << (Space::host_accessible ? 12 : 18),
+                               min_triangles_to_sort = 4096;
 };
 
 namespace detail {

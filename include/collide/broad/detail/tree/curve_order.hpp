@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <collide/broad/detail/bucket/triangle_order.hpp>
 #include <collide/broad/detail/grid/mesh_statistics.hpp>
+#include <collide/broad/detail/tree/tree_node.hpp>
 #include <collide/core/memory.hpp>
 #include <collide/spaces/detail/block.hpp>
 #if defined(__CUDACC__)
@@ -198,6 +200,51 @@ class point_order {
 
  private:
   curve_sort sort_;
+};
+
+/// Sorts points along Morton's curve through the box of a mesh, on the host: points outside count as on its surface,
+/// which is where they are nearest to it.
+template <class S>
+class points_on_curve {
+ public:
+  template <class Space>
+  void reserve(Space& space, std::size_t n) {
+    order_.reserve(space.resource(), n);
+    spare_.reserve(space.resource(), n);
+  }
+
+  /// Their numbers in order; null if points that follow each other mostly are near each other. O(points). `around` is
+  /// the box of the mesh, as seen from `origin`.
+  template <class Space>
+  id const* sort(Space& space, sphere_view<S> const& points, aabb<float> const& around, vec3<S> const& origin) {
+    float widest = 0;
+    for (int k = 0; k < 3; ++k) widest = max(widest, around.upper[k] / 2 - around.lower[k] / 2);
+    float const scale = 512 / widest;
+    auto const place_of = [&](std::size_t i) {
+      vec3<S> const p = points[i].centre;
+      std::uint32_t x[3];
+      for (int k = 0; k < 3; ++k) {
+        float const at = (static_cast<float>(p[k] - origin[k]) - around.lower[k]) * scale;
+        x[k] = static_cast<std::uint32_t>(at > 0 ? min(at, 1023.0f) : 0.0f);  // also of what is NaN
+      }
+      return morton_place(x[0], x[1], x[2]);
+    };
+    std::size_t const n = points.size(), step = n / 256 + 1;
+    std::size_t apart = 0, pairs = 0;
+    for (std::size_t i = 1; i < n; i += step, ++pairs) apart += place_of(i - 1) >> 15 != place_of(i) >> 15;
+    if (4 * apart <= pairs) return nullptr;
+    reserve(space, n);
+    triangle_on_curve *const order = order_.data(), *const spare = spare_.data();
+    space.for_each(n, [&](std::size_t i) { order[i] = {place_of(i), static_cast<id>(i)}; });
+    sort_by_digit(space, order, spare, n, 10);  // a hundred cells on an axis are enough
+    sort_by_digit(space, spare, order, n, 20);
+    id* const numbers = reinterpret_cast<id*>(spare);
+    space.for_each(n, [&](std::size_t i) { numbers[i] = order[i].number; });
+    return numbers;
+  }
+
+ private:
+  buffer<triangle_on_curve> order_, spare_;
 };
 
 }  // namespace collide::detail
