@@ -1,12 +1,14 @@
 /// Inside and outside of closed meshes against the oracle.
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include <collide/sinks/contains.hpp>
 
+#include "../../flush_to_zero.hpp"
 #include "compared.hpp"
 #include "nearest/point_cases.hpp"
 
@@ -155,6 +157,39 @@ TEST_CASE_TEMPLATE("parity: the largest and the smallest coordinates", S, float,
     CHECK(all.inside > all.cases / 5);
     CHECK(all.inside < all.cases);
   }
+}
+
+TEST_CASE_TEMPLATE("parity: what doubles decide is so, beside edges and the plane, whatever the exponents", S, float,
+                   double) {
+  tests::dice roll(12);
+  int decided = 0, wrong = 0;
+  for (int n = 0; n < 40000; ++n) {
+    S const scale = std::ldexp(S(1), roll.integer(-140, 100)), least = std::numeric_limits<S>::denorm_min();
+    auto const corner = [&] {
+      auto const at = [&] { return n % 3 == 0 ? S(roll.integer(-3, 3)) : S(roll.integer(-4000, 4000)) / 999; };
+      return collide::vec3<S>(at() * scale, at() * (n % 5 == 0 ? least : scale), at() * scale);
+    };
+    collide::triangle<S> const t{corner(), corner(), corner()};
+    S const v = S(roll.integer(0, 8)) / 8, w = n % 2 == 0 ? 0 : (1 - v) * S(roll.integer(0, 8)) / 8;
+    collide::vec3<S> p = t.a * (1 - v - w) + t.b * v + t.c * w;
+    S const step = scale * std::ldexp(S(1), -roll.integer(8, std::numeric_limits<S>::digits));
+    for (int k = 0; k < 3; ++k) p[k] += step * S(roll.integer(-2, 2));
+    bool on_line;
+    auto const expected = collide::detail::cross_ray(collide::detail::widened(t), collide::detail::widened(p), on_line);
+    for (bool const flushed : {false, true}) {
+      auto crossing = collide::detail::ray_crossing::none;
+      bool known;
+      {
+        std::optional<tests::flush_to_zero> flush;
+        if (flushed) flush.emplace();
+        known = collide::detail::cross_ray_in_double(t, p, crossing);
+      }
+      decided += known;
+      wrong += known && crossing != expected;
+    }
+  }
+  CHECK(decided > 20000);
+  CHECK(wrong == 0);
 }
 
 TEST_CASE_TEMPLATE("parity: what is not finite", S, float, double) {

@@ -224,7 +224,7 @@ class points_on_curve {
       vec3<S> const p = points[i].centre;
       std::uint32_t x[3];
       for (int k = 0; k < 3; ++k) {
-        float const at = (static_cast<float>(p[k] - origin[k]) - around.lower[k]) * scale;
+        float const at = (float_below(p[k] - origin[k]) - around.lower[k]) * scale;
         x[k] = static_cast<std::uint32_t>(at > 0 ? min(at, 1023.0f) : 0.0f);  // also of what is NaN
       }
       return morton_place(x[0], x[1], x[2]);

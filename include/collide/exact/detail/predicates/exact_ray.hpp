@@ -28,15 +28,17 @@ COLLIDE_HD_INLINE bool cross_ray_in_double(triangle<S> const& t, vec3<S> const& 
     return mul_rn(v.x(), w.y()) - mul_rn(v.y(), w.x());
   };
   double const ab = side(a, b), bc = side(b, c), ca = side(c, a), least = min(min(ab, bc), ca),
-               most = max(max(ab, bc), ca), error = mul_rn(16 * u, mul_rn(size, size));
+               most = max(max(ab, bc), ca), area = mul_rn(size, size);
+  // guard: ray-range
   if (!(size >= smallest && size <= 0x1p140)) return false;
-  crossing = ray_crossing::none;
   // guard: ray-sides
+  double const error = mul_rn(16 * u, area);
+  crossing = ray_crossing::none;
   if (least < -error && most > error) return true;
   if (!(least > error || most < -error)) return false;
   double const height = mul_rn(bc, a.z()) + mul_rn(ca, b.z()) + mul_rn(ab, c.z()), along = least > 0 ? height : -height;
   // guard: ray-along
-  double const height_error = mul_rn(mul_rn(8.0, error), size);
+  double const height_error = mul_rn(128 * u, mul_rn(area, size));
   if (along > height_error) crossing = ray_crossing::above;
   return along > height_error || along < -height_error;
 }
