@@ -101,12 +101,13 @@ struct tree_policy {
 /// sizes; and to find the nearest triangle. The host divides the triangles by the surface area heuristic, O(n log n),
 /// long thin ones in up to 64 pieces; devices sort them along Hilbert's curve and make a radix tree of groups of them,
 /// O(n). Query O(spheres * (log(triangles) + candidates)). `detector::refit` lets the tree of a mesh that deforms stay
-/// as it is. On a device 2^18 points or more that search, for `nearest` and others, are put in order first.
+/// as it is. On a device 2^18 points or more that search, for `nearest` and others, are put in order first; on the host
+/// 4,096, unless they have an order, of a mesh of as many triangles.
 ///
-/// Memory: at most 100 bytes for each triangle on a device, and 40 for each point that is put in order; 110 for each
-/// triangle on the host; where triangles are cut 210 for each piece, of which there are at most 4 for each triangle, or
-/// 2^18 more than triangles in small meshes; there is no budget for that, as `bucket` has one; with `winding_number` 61
-/// more. A mesh has fewer than 2^29 triangles.
+/// Memory: at most 100 bytes for each triangle on a device, and 40 for each point that is put in order, 16 on the host;
+/// 110 for each triangle on the host; where triangles are cut 210 for each piece, of which there are at most 4 for each
+/// triangle, or 2^18 more than triangles in small meshes; there is no budget for that, as `bucket` has one; with
+/// `winding_number` 61 more. A mesh has fewer than 2^29 triangles.
 struct bvh : per_sphere<detail::tree_policy> {};
 
 }  // namespace collide

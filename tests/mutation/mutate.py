@@ -231,8 +231,6 @@ MUTATIONS = {
         [('  return a.y() != b.y() ? (b.y() < a.y() ? 1 : -1) : sign_of(b.x() - a.x());\n', '  return 0;\n')]),
     "ray-moved-twice": ('along an edge, it is moved beside it', 'nearest', 'plain',
         [(' : sign_of(b.x() - a.x());', ' : 0;')]),
-    "ray-range": ('numbers that are flushed to zero', 'nearest', 'plain',
-        [('  if (!(size >= smallest && size <= 0x1p140)) return false;\n', '')]),
     "ray-sides": ('the error of sides in a ray by itself', 'nearest', 'plain',
         [('mul_rn(16 * u, area)', '0')]),
     "ray-along": ('the error of the height above its beginning', 'nearest', 'plain',
@@ -278,6 +276,7 @@ SOUND["none.regions"] = (None, "stages", "plain", NO_REGIONS)
 
 # (file, the text of the guard, with any names, why no row goes wrong without it)
 UNSEEN = [
+    ('exact/detail/predicates/exact_ray.hpp', 'size >= smallest && size <= 0x1p140', 'products that overflow are infinite or NaN, and no comparison holds; numbers that are flushed to zero decide wrongly only where they are among a few others as small'),
     ('narrow/detail/measure_nearest.hpp', 'scale >= 0x1p-1000 && scale <= 0x1p850', 'differences that overflow become NaN, which the tests that follow refuse; those that are scaled up stay exact'),
     ('narrow/detail/distance_bounds.hpp', ' && size <= most)', 'products that overflow are infinite or NaN: no comparison holds that would separate, and the upper bound is infinite'),
     ("exact/detail/predicates/exact.hpp", "if (square.value == 0) return {0, -4000};",

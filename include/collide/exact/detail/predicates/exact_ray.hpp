@@ -29,7 +29,6 @@ COLLIDE_HD_INLINE bool cross_ray_in_double(triangle<S> const& t, vec3<S> const& 
   };
   double const ab = side(a, b), bc = side(b, c), ca = side(c, a), least = min(min(ab, bc), ca),
                most = max(max(ab, bc), ca), area = mul_rn(size, size);
-  // guard: ray-range
   if (!(size >= smallest && size <= 0x1p140)) return false;
   // guard: ray-sides
   double const error = mul_rn(16 * u, area);
