@@ -16,8 +16,8 @@ namespace collide::detail {
 enum class ray_crossing { none, above, at_point };
 
 /// Decides as `cross_ray` does, in doubles, unless the ray passes near an edge or begins near the triangle: false then.
-/// With M the largest coordinate of a corner as seen from the point, corners have
-/// an error of u M, sides one below 16 u M^2, and the height, a sum of sides times coordinates, one below 128 u M^3.
+/// With M the largest coordinate of a corner as seen from the point, corners have an error of u M, sides one below
+/// 16 u M^2, and the height, a sum of sides times coordinates, one below 128 u M^3.
 template <class S>
 COLLIDE_HD_INLINE bool cross_ray_in_double(triangle<S> const& t, vec3<S> const& p, ray_crossing& crossing) {
   constexpr double u = ieee_traits<double>::unit_roundoff, smallest = 0x1p-70;  // subnormal numbers may be flushed
