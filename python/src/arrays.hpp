@@ -87,8 +87,8 @@ inline std::string name_of_device(int type, int number) {
 template <class Array = array>
 Array import_array(nb::handle from, char const* name, place const& at) {
   Array a;
-  if (is_on_host(at.device_type) && nb::try_cast(from, a, false)) {
-    // an array of the host
+  if ((is_on_host(at.device_type) || PyCapsule_CheckExact(from.ptr())) && nb::try_cast(from, a, false)) {
+    // an array of the host, or one that its library has exported
   } else if (nb::hasattr(from, "__dlpack__")) {
     nb::object capsule;
     try {

@@ -90,6 +90,10 @@ class _Numpy:
         """The stream that the library works on now, and what its arrays' __dlpack__ is given."""
         return NO_STREAM
 
+    def lent(self, array):
+        """An array, or a capsule of DLPack that is made sooner than by its __dlpack__."""
+        return array
+
     def array(self, result, stream):
         """A result of a compiled module as an array of this library, without a copy."""
         return result if self.is_numpy else self.module.from_dlpack(result)
@@ -118,6 +122,10 @@ class _Torch(_Numpy):
     def stream(self, device):
         raw = getattr(self.module._C, "_cuda_getCurrentRawStream", None)  # makes no object: as torch's own compiler asks
         return raw(device) if raw else self.module.cuda.current_stream(device).cuda_stream, -1
+
+    def lent(self, array):  # its __dlpack__ is in Python, and takes some microseconds
+        is_plain = type(array) is self.module.Tensor and array.is_cuda and array.layout is self.module.strided
+        return self.module.utils.dlpack.to_dlpack(array) if is_plain and not array.requires_grad else array
 
     def array(self, result, stream):  # a capsule is taken as it is, without asking for its device and stream
         return self.module.from_dlpack(result.__dlpack__())

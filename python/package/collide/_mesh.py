@@ -508,7 +508,7 @@ class Mesh:
             capacity = whole("capacity", capacity, 0, 2**63 - 1)
         is_sorted = choice("order", order, ("unspecified", "canonical")) == "canonical"
         results = is_sorted, capacity, out, library.is_numpy
-        found = function(stream, what, centres, *asked, [] if poses is None else _rows(poses), results)
+        found = function(stream, what, library.lent(centres), *asked, [] if poses is None else _rows(poses), results)
         if kind is int:
             return found
         if kind is Csr:
