@@ -73,6 +73,7 @@ void bind_simulation(nb::module_& m, char const* name) {
   bind_call(c, "size", &simulation_base::size);
   bind_call(c, "time", &simulation_base::time);
   bind_call(c, "largest_time_step", &simulation_base::largest_time_step);
+  bind_call(c, "take_bookkeeping", &type::take_bookkeeping);
   bind_call(c, "energy", &simulation_base::energy);
   bind_call(c, "sums", &simulation_base::sums);
   bind_call(c, "clear", &simulation_base::clear);

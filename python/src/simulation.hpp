@@ -21,13 +21,8 @@ namespace collide_python {
 template <class Space, class S>
 class simulation : public called<Space> {
  public:
-  simulation(std::string const& library, int threads, int device) : called<Space>(threads, device) {
-    void* const loaded =
-        dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);  // for good: its code is in objects that live on
-    if (loaded == nullptr) throw collide::error(std::string("collide: ") + dlerror());
-    make_ = reinterpret_cast<make_simulation*>(dlsym(loaded, "collide_simulation"));
-    if (make_ == nullptr) throw collide::error("collide: " + library + " has no simulation");
-  }
+  simulation(std::string const& library, int threads, int device)
+      : called<Space>(threads, device), make_{function_of<make_simulation>(library, "collide_simulation")} {}
 
   ~simulation() {
     if (mesh_.second.use_count() == 1) runtime_.settle();  // what reads it
@@ -120,10 +115,14 @@ class simulation : public called<Space> {
     return true;
   }
 
+  void take_bookkeeping(std::string const& library) {
+    one().books.reset(function_of<make_bookkeeping>(library, "collide_bookkeeping")());
+  }
   bool load(std::string const& path) {
     if (is_shown()) return false;
     without_gil const others_run;
-    one().load(path);
+    one().books->load(one().whole(), path);
+    one().clear_all();
     return true;
   }
 
@@ -171,10 +170,20 @@ class simulation : public called<Space> {
   using called<Space>::runtime_;
   using dlpack = nb::dlpack::dtype_code;
 
+  /// A function of a library, which stays loaded for good: its code is in objects that live on.
+  template <class Function>
+  static Function* function_of(std::string const& library, char const* name) {
+    void* const loaded = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (loaded == nullptr) throw collide::error(std::string("collide: ") + dlerror());
+    auto* const found = reinterpret_cast<Function*>(dlsym(loaded, name));
+    if (found == nullptr) throw collide::error("collide: " + library + " has no " + name);
+    return found;
+  }
+
   /// Whether arrays of Python show its columns: after `set` they show the old ones.
   bool is_shown() const { return one_.use_count() > 1; }
 
-  make_simulation* make_ = nullptr;
+  make_simulation* make_;
   collide::sphere_pairs<Space, S> pairs_{runtime_.space()};
   std::shared_ptr<simulation_base> one_;
   std::pair<array, std::shared_ptr<void>> mesh_;  ///< the memory that it reads

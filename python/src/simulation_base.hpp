@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <memory_resource>
 #include <string>
 #include <vector>
@@ -26,10 +27,26 @@ struct whereabouts {
   std::pmr::memory_resource* memory;
 };
 
+/// Energy, contact report and files of a list of effects: a library of their own, compiled when one of them is first
+/// asked for. `of` is a collide::simulation.
+class bookkeeping {
+ public:
+  virtual ~bookkeeping() = default;
+
+  /// Kinetic, rotational, elastic, potential and the others of collide::energy_sums, in their order.
+  virtual std::vector<double> energy(void const* of, double density) const = 0;
+  /// The numbers of collide::contact_counts, in their order.
+  virtual std::vector<double> contact_report(void const* of) const = 0;
+  virtual void save(void const* of, std::string const& path) const = 0;
+  virtual void load(void* of, std::string const& path) const = 0;
+};
+
 class simulation_base {
  public:
   virtual ~simulation_base() = default;
 
+  /// The collide::simulation.
+  virtual void* whole() = 0;
   /// On which stream, or with how many threads, from now on.
   virtual void use(whereabouts const& w) = 0;
   /// Sets a parameter of the effect of a number; false if it has none of that name and size.
@@ -48,23 +65,23 @@ class simulation_base {
   virtual std::size_t size() = 0;
   virtual double time() = 0;
   virtual double largest_time_step() = 0;
-  /// Kinetic, rotational, elastic and potential.
-  virtual std::vector<double> energy(double density) = 0;
   /// What the effect of a number has summed up since `clear`; nothing if it does not.
   virtual std::vector<double> sums(std::size_t effect) = 0;
   virtual void clear(std::size_t effect) = 0;
+  virtual void clear_all() = 0;
   /// What has come due, what of it overlapped, and what was not born; nothing without a source.
   virtual std::vector<double> births() = 0;
-  /// The numbers of collide::contact_counts, in their order.
-  virtual std::vector<double> contact_report() = 0;
   /// Writes the particles to a collide::sphere_view.
   virtual void spheres(void* to) = 0;
   /// The states of all driven bodies, 16 numbers each: those of collide::body_state. False if none is driven.
   virtual bool drive(std::vector<double> const& states) = 0;
   virtual std::vector<column> columns() = 0;
   virtual void assign(std::size_t column, void const* values) = 0;
-  virtual void save(std::string const& path) = 0;
-  virtual void load(std::string const& path) = 0;
+
+  std::unique_ptr<bookkeeping> books;  ///< what the others need
+  std::vector<double> energy(double density) { return books->energy(whole(), density); }
+  std::vector<double> contact_report() { return books->contact_report(whole()); }
+  void save(std::string const& path) { books->save(whole(), path); }
 };
 
 /// The memory in which an effect sums up; most have none. See sums.hpp.
@@ -80,7 +97,8 @@ struct sums_of {
   }
 };
 
-/// What a compiled list of effects exports under the name `collide_simulation`.
+/// What compiled lists of effects export under the names `collide_simulation` and `collide_bookkeeping`.
 using make_simulation = simulation_base*(whereabouts const&);
+using make_bookkeeping = bookkeeping*();
 
 }  // namespace collide_python

@@ -15,8 +15,6 @@
 #include <collide/bucket.cuh>
 #include <collide/effects/bodies.hpp>
 #include <collide/simulation.cuh>
-#include <collide/simulation/checkpoint.hpp>
-#include <collide/simulation/energy.hpp>
 #include <collide/simulation/place_clumps.hpp>
 
 #include "simulation_base.hpp"
@@ -70,6 +68,7 @@ class simulation_of final : public simulation_base {
  public:
   explicit simulation_of(whereabouts const& w) : one_(make_space(w, static_cast<Space*>(nullptr))) {}
 
+  void* whole() override { return &one_; }
   void use(whereabouts const& w) override { one_.space() = make_space(w, &one_.space()); }
 
   bool set_parameter(std::size_t effect, std::string const& name, std::vector<double> const& values) override {
@@ -124,10 +123,6 @@ class simulation_of final : public simulation_base {
   std::size_t size() override { return one_.size(); }
   double time() override { return one_.time(); }
   double largest_time_step() override { return collide::largest_time_step(one_); }
-  std::vector<double> energy(double density) override {
-    collide::energy_sums const e = collide::energy(one_, density);
-    return {e.kinetic, e.rotational, e.elastic, e.potential, e.tangential, e.damping, e.sliding, e.rolling, e.given};
-  }
 
   std::vector<double> sums(std::size_t effect) override {  // not by way of the effect, which would wake what sleeps
     std::vector<double> found;
@@ -139,6 +134,7 @@ class simulation_of final : public simulation_base {
     std::size_t number = 0;
     ((number++ == effect ? std::get<sums_of<Effect>>(sums_).clear(one_.space()) : void()), ...);
   }
+  void clear_all() override { (std::get<sums_of<Effect>>(sums_).clear(one_.space()), ...); }
 
   std::vector<double> births() override {
     if constexpr (type::effects_type::makes) {
@@ -146,11 +142,6 @@ class simulation_of final : public simulation_base {
       return {static_cast<double>(n.due), static_cast<double>(n.overlapping), static_cast<double>(n.not_born)};
     }
     return {};
-  }
-  std::vector<double> contact_report() override {
-    collide::contact_counts const n = collide::contact_report(one_);
-    return {static_cast<double>(n.contacts), n.coordination, static_cast<double>(n.deep), n.largest_overlap,
-            n.longest_good_step};
   }
   void spheres(void* to) override { *static_cast<collide::sphere_view<S>*>(to) = one_.spheres(); }
   bool drive(std::vector<double> const& states) override {
@@ -166,12 +157,6 @@ class simulation_of final : public simulation_base {
 
   std::vector<column> columns() override { return describe(typename type::columns{}); }
   void assign(std::size_t i, void const* values) override { assign(i, values, typename type::columns{}); }
-
-  void save(std::string const& path) override { collide::save(one_, path); }
-  void load(std::string const& path) override {
-    collide::load(one_, path);
-    clear_all();
-  }
 
  private:
   static constexpr bool has_clumps = type::effects_type::has_clumps;
@@ -190,7 +175,6 @@ class simulation_of final : public simulation_base {
     parameters(effect, setter);
     std::get<sums_of<E>>(sums_).make(one_.space(), effect, bodies_, triangles_);
   }
-  void clear_all() { (std::get<sums_of<Effect>>(sums_).clear(one_.space()), ...); }
 
   template <class... Column>
   std::vector<column> describe(collide::columns<Column...>) {

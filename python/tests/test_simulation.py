@@ -222,6 +222,40 @@ def test_a_list_is_compiled_once(tmp_path, monkeypatch, capfd):
     assert len(list((tmp_path / "cache").iterdir())) == 1
 
 
+@compiles
+def test_energy_and_files_are_compiled_when_they_are_asked_for(tmp_path, monkeypatch, capfd):
+    monkeypatch.setenv("COLLIDE_CACHE", str(tmp_path / "cache"))
+
+    def made():
+        sim = collide.Simulation(floor(), [collide.wind(1, 0, 0, linear=2)])
+        sim.set(ABOVE, 0.25)
+        sim.steps(10, 1e-3)
+        return sim
+
+    sim = made()
+    monkeypatch.setenv("CXX", "no-such-compiler")
+    with pytest.raises(collide.Error, match="there is no compiler"):
+        sim.energy(1000)
+    sim.steps(10, 1e-3)  # goes on
+    monkeypatch.delenv("CXX")
+    mass = 1000 * 4 / 3 * numpy.pi * 0.25**3
+    expected = 0.5 * mass * (sim["velocity"].astype(float) ** 2).sum()
+    assert expected > 0 and abs(sim.energy(1000)["kinetic"] / expected - 1) < 1e-6
+    assert sim.contact_report().contacts == 0
+    sim.save(tmp_path / "saved")
+    other = made()
+    shown = other["velocity"]  # so that the particles are those of another compiled simulation
+    before = shown.copy()
+    other.load(tmp_path / "saved")
+    assert (other["velocity"] == sim["velocity"]).all() and (shown == before).all() and other.time == sim.time
+    assert other.energy(1000) == sim.energy(1000)
+    assert (pickle.loads(pickle.dumps(sim))["velocity"] == sim["velocity"]).all()
+    progress = capfd.readouterr().err
+    assert progress.count("compiles a simulation of wind") == 1
+    assert progress.count("compiles energy, contact_report, save and load of wind") == 1
+    assert len(list((tmp_path / "cache").iterdir())) == 2
+
+
 SPRING = """struct spring {
   using reads = collide::columns<collide::position>;
   using writes = collide::columns<collide::velocity>;

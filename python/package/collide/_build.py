@@ -17,17 +17,17 @@ from ._source import BUILT_IN, name_of, source
 _HERE = pathlib.Path(__file__).parent
 
 
-def library(effects, space, capability, **options):
-    """The path of the library of a list of effects, from the package, from the cache, or compiled now."""
-    text = source(effects, space, **options)
-    built_in = _HERE / "lists" / (name_of(text) + ".so")
+def library(part, effects, space, capability, **options):
+    """The path of the library of a part of a list of effects, from the package, from the cache, or compiled now."""
+    built_in = _HERE / "lists" / (name_of(source(effects, space, **options)) + ".so")
     if built_in.exists():
         return str(built_in)
+    text = source(effects, space, **options, parts=(part,))
     command = _command(space, capability)
     key = "\n".join([text, _version_of(command[0]), *command, _headers()])
     path = cache() / (hashlib.sha256(key.encode()).hexdigest()[:32] + ".so")
     if not path.exists():
-        _compile(text, command, path, _names(effects), space)
+        _compile(text, command, path, _names(effects), space, part)
     return str(path)
 
 
@@ -80,11 +80,12 @@ def _headers():
     return digest.hexdigest()
 
 
-def _compile(text, command, path, names, space):
+def _compile(text, command, path, names, space, part):
     path.parent.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
     tool = os.path.basename(command[0])
-    print(f"collide: {tool} compiles a simulation of {names} ...", end="", file=sys.stderr, flush=True)
+    what = {"simulation": "a simulation", "bookkeeping": "energy, contact_report, save and load"}[part]
+    print(f"collide: {tool} compiles {what} of {names} ...", end="", file=sys.stderr, flush=True)
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         file = pathlib.Path(folder) / ("simulation.cpp" if space == "host" else "simulation.cu")
         file.write_text(text)

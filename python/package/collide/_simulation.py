@@ -118,7 +118,7 @@ class Simulation:
     threads    on the host, as for `Mesh`
 
     A list that is not in the package is compiled by g++, or nvcc, when it is first used, and kept in COLLIDE_CACHE or
-    ~/.cache/collide: five to ten seconds. Raises `Error` without a compiler, or where effects do not fit together. Units are
+    ~/.cache/collide: three to seven seconds, and as many when `energy`, `contact_report`, `save` or `load` is first called. Raises `Error` without a compiler, or where effects do not fit together. Units are
     those of the scene. The same steps give the same bits on every run, and on host and GPU.
 
     Pickle and copy.deepcopy copy the mesh, particles and parameters, as `save` does; `sums` begin anew.
@@ -136,22 +136,31 @@ class Simulation:
         self._mesh, self._bodies = mesh, _listed("bodies", bodies, Body, "collide.Body(0, 2)")
         self._device, self._library, self._threads = mesh._device, mesh._library, how_many_threads(threads)
         self._options = {"swept": bool(swept), "precision": choice("precision", precision, PRECISIONS)}
-        module = module_for(self._device, "mesh")
-        on_gpu = self._device[0] == CUDA
-        self._path = _build.library(
-            self.effects,
-            "cuda_shared" if on_gpu else "host",
-            module.capability(self._device[1]) if on_gpu else None,
-            scalar="double" if mesh._is_wide else "float",
-            **self._options,
-        )
+        self._path, self._bookkeeping = self._library_for("simulation"), None
         self._simulation, self._is_set = self._made(), False
+
+    def _library_for(self, part):
+        """The path of a compiled part of the list."""
+        on_gpu = self._device[0] == CUDA
+        capability = module_for(self._device, "mesh").capability(self._device[1]) if on_gpu else None
+        scalar = "double" if self._mesh._is_wide else "float"
+        return _build.library(part, self.effects, "cuda_shared" if on_gpu else "host", capability, scalar=scalar, **self._options)
+
+    def _with_bookkeeping(self):
+        """The compiled simulation with energy, contact_report, save and load, compiled when one is first called."""
+        if self._bookkeeping is None:
+            path = self._library_for("bookkeeping")
+            self._simulation.take_bookkeeping(self._stream(), path)
+            self._bookkeeping = path
+        return self._simulation
 
     def _made(self):
         """The compiled simulation, with mesh and parameters."""
         module = module_for(self._device, "mesh")
         kind = module.SimulationDouble if self._mesh._is_wide else module.SimulationFloat
         made = kind(self._path, self._threads, self._device[1])
+        if self._bookkeeping is not None:
+            made.take_bookkeeping(self._stream(), self._bookkeeping)
         self._give_mesh(made)
         for number, effect in enumerate(self.effects):
             for name, values in effect.parameters.items():
@@ -338,7 +347,7 @@ class Simulation:
         """Kinetic, rotational, elastic and potential energy, and that of tangential springs; with `contact_work`, also the
         work lost to damping, sliding and rolling, and that given by walls. ``density`` is mass per volume, 0 that of
         the effect by which particles meet. Waits; O(n), O(n log n) where particles meet."""
-        of_all = self._simulation.energy(self._stream(), real("density", density))
+        of_all = self._with_bookkeeping().energy(self._stream(), real("density", density))
         names = "kinetic rotational elastic potential tangential damping sliding rolling given"
         return dict(zip(names.split(), of_all))
 
@@ -353,7 +362,7 @@ class Simulation:
 
     def contact_report(self) -> ContactReport:
         """How particles overlap, and which step is short enough: `ContactReport`. Waits; O(n log n)."""
-        found = self._simulation.contact_report(self._stream())
+        found = self._with_bookkeeping().contact_report(self._stream())
         return ContactReport(int(found[0]), found[1], int(found[2]), found[3], found[4])
 
     @property
@@ -392,11 +401,13 @@ class Simulation:
 
     def save(self, path: Union[str, os.PathLike]) -> None:
         """Writes particles and parameters to a file; not the mesh."""
-        self._simulation.save(self._stream(), _path(path))
+        self._with_bookkeeping().save(self._stream(), _path(path))
 
     def load(self, path: Union[str, os.PathLike]) -> None:
         """Goes on where `save` was called, by a simulation of the same list: the same bits as without a break."""
-        self._replace("load", _path(path))
+        path = _path(path)
+        self._with_bookkeeping()
+        self._replace("load", path)
         self._is_set = True
 
     def __repr__(self):

@@ -40,15 +40,16 @@ def parameters_of(effects):
     return "\n".join([*lines, "}\n"])
 
 
-def source(effects, space="host", scalar="float", precision="exact", swept=False):
-    """C++ for a list of effects."""
+PARTS = "simulation", "bookkeeping"  # what the package has in one library, and _build compiles one by one
+
+
+def source(effects, space="host", scalar="float", precision="exact", swept=False, parts=PARTS):
+    """C++ for parts of a list of effects."""
     swept = "_swept" if swept else ""
     narrow = f"collide::karabassi{swept}<collide::{_PRECISIONS[precision]}>"
     list_ = ", ".join([f"collide::{space}", scalar, narrow, *(e._type for e in effects)])
-    return (
-        f'#include <collide/karabassi{swept}.hpp>\n{parameters_of(effects)}#include "simulation_of.hpp"\n'
-        f"COLLIDE_PYTHON_SIMULATION({list_})\n"
-    )
+    exports = "".join(f'#include "{part}_of.hpp"\nCOLLIDE_PYTHON_{part.upper()}({list_})\n' for part in parts)
+    return f"#include <collide/karabassi{swept}.hpp>\n{parameters_of(effects)}{exports}"
 
 
 def name_of(text):
