@@ -262,7 +262,7 @@ def test_own_law_among_those_of_the_library():
     (lambda: granular.materials(granular.Solid("soft"), granular.SurfacePair()), TypeError, "solids: expected numbers"),
     (lambda: granular.marshall(granular.mindlin()), ValueError, "rolling: mindlin is no law of rolling"),
     (lambda: granular.torsion(1), TypeError, r"rolling: expected a law such as collide\.granular\.epsd\(\), got 1"),
-    (lambda: granular.mindlin(damping="some"), ValueError, "damping: is 'some', expected 'none' or 'of_tangent'"),
+    (lambda: granular.mindlin(damping="some"), ValueError, "damping: is 'some', expected 'none', 'of_tangent' or 'of_normal'"),
     (lambda: granular.mindlin(test=1), ValueError, "test: is 1, expected 'spring'"),
     (lambda: granular.materials([granular.Solid()] * 2, {(0, 0): granular.SurfacePair()}), ValueError, r"pairs: .*\(0, 1\)"),
     (lambda: collide.granular_contact(granular.linear(), materials=[1, 2]), ValueError, "materials: expected"),

@@ -397,7 +397,7 @@ class Mesh:
         arguments that do not fit, `Error` if the library or CUDA fails. It does not wait on a GPU. The first call prepares a
         tree, O(m log m) for m triangles; O(log m) for a point near the mesh.
         """
-        return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, _reach(max_distance), poses=poses)
+        return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, real("max_distance", max_distance), poses=poses)
 
     def k_nearest(
         self, points: Array, k: int, *, max_distance: float = math.inf, poses: Optional[Poses] = None,
@@ -411,7 +411,7 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        asked = points, whole("k", k, 1, 32), _reach(max_distance)
+        asked = points, whole("k", k, 1, 32), real("max_distance", max_distance)
         return self._ask(self._mesh.search, Nearest, out, "k_nearest", *asked, poses=poses)
 
     def distance(
@@ -428,7 +428,7 @@ class Mesh:
         if signed:
             self._look_for_holes()
         what = "sides" if signed else "distance"
-        return self._ask(self._mesh.search, float, out, what, points, 1, _reach(max_distance), poses=poses)
+        return self._ask(self._mesh.search, float, out, what, points, 1, real("max_distance", max_distance), poses=poses)
 
     def winding_number(self, points: Array, *, beta: float = 3, out: Optional[Array] = None) -> Winding:
         """How often the mesh winds around each point: `Winding`, whose ``value`` is above 1/2 inside. For meshes with
@@ -457,7 +457,7 @@ class Mesh:
         Other arguments, errors and costs as for `nearest`.
         """
         self._look_for_holes()
-        asked = "signed_distance", points, 1, _reach(max_distance)
+        asked = "signed_distance", points, 1, real("max_distance", max_distance)
         return self._ask(self._mesh.search, SignedDistance, out, *asked, poses=poses)
 
     def contains(self, points: Array, *, poses: Optional[Poses] = None, out: Optional[Array] = None) -> Array:
@@ -550,14 +550,8 @@ def _rows(poses):
         raise TypeError("poses: expected numbers of shape (bodies, 7), of each a position and a quaternion w, x, y, z") from None
 
 
-def _reach(max_distance):
-    return real("max_distance", max_distance)
-
-
 def _is_wide(array):
     if not hasattr(array, "dtype") and device_of(array, "vertices")[0] != CUDA:
-        import numpy
-
         try:
             array = numpy.from_dlpack(array)
         except Exception:  # noqa: BLE001: it is told below what is wrong

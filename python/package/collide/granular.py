@@ -9,10 +9,10 @@ import dataclasses
 from typing import List, Mapping, Optional, Sequence, Tuple, Union
 
 try:
-    from ._errors import refuse, shown
+    from ._errors import choice, refuse, shown
     from .effects import Effect, Law, _describes, _numbers
 except ImportError:  # CMake runs _source.py by itself
-    from _errors import refuse, shown
+    from _errors import choice, refuse, shown
     from effects import Effect, Law, _describes, _numbers
 
 
@@ -37,19 +37,15 @@ def dashpot(damping: float = 0) -> Law:
 
 
 def _mindlin(damping, test):
-    found = {}
-    for name, value, names in (
-        ("damping", damping, ("none", "of_tangent", "of_normal")),
-        ("test", test, ("spring", "spring_and_dashpot")),
-    ):
-        if value not in names:
-            raise ValueError(f"{name}: is {value!r}, expected {' or '.join(map(repr, names))}")
-        found[name] = names.index(value)
-    return found
+    choice("damping", damping, DAMPING)
+    return {"damping": DAMPING.index(damping), **_tested(test)}
 
 
-def _slip_test(test):
-    return _mindlin("none", test)["test"]
+def _tested(test):
+    return {"test": TESTS.index(choice("test", test, TESTS))}
+
+
+DAMPING, TESTS = ("none", "of_tangent", "of_normal"), ("spring", "spring_and_dashpot")
 
 
 @_describes(Law, "effects/granular/cundall_strack", part="tangential")
@@ -59,7 +55,7 @@ def cundall_strack(
 ) -> Law:
     """Tangential law: a spring that remembers slip and a dashpot, parts of the normal ones, up to Coulomb's limit: with
     `linear` LAMMPS' gran/hooke/history. The other arguments are those of `mindlin`."""
-    return {"test": _slip_test(test)}
+    return _tested(test)
 
 
 @_describes(Law, "effects/granular/mindlin", part="tangential")
