@@ -347,7 +347,8 @@ class Simulation:
         """Kinetic, rotational, elastic and potential energy, and that of tangential springs; with `contact_work`, also the
         work lost to damping, sliding and rolling, and that given by walls. ``density`` is mass per volume, 0 that of
         the effect by which particles meet. Waits; O(n), O(n log n) where particles meet."""
-        of_all = self._with_bookkeeping().energy(self._stream(), real("density", density))
+        density = real("density", density)
+        of_all = self._with_bookkeeping().energy(self._stream(), density)
         names = "kinetic rotational elastic potential tangential damping sliding rolling given"
         return dict(zip(names.split(), of_all))
 
@@ -401,7 +402,8 @@ class Simulation:
 
     def save(self, path: Union[str, os.PathLike]) -> None:
         """Writes particles and parameters to a file; not the mesh."""
-        self._with_bookkeeping().save(self._stream(), _path(path))
+        path = _path(path)
+        self._with_bookkeeping().save(self._stream(), path)
 
     def load(self, path: Union[str, os.PathLike]) -> None:
         """Goes on where `save` was called, by a simulation of the same list: the same bits as without a break."""
