@@ -74,7 +74,7 @@ def write_lammps(folder, scene, law, steps):
                     "damping coeff_restitution")
     else:
         kn, kt = young[0] / 0.96 / 2 * 4 / 3, 8 * young[0] / 2.4 / 3.6
-        gamma = 3e9 * (young[0] / 1e9) ** 0.5
+        gamma = {"bed": 3e9, "drum": 4e6, "loose": 3e7}[scene]  # of a restitution of about a half
         deck += [f"pair_style gran/hertz/history {kn:.6g} {kt:.6g} {gamma:.6g} NULL 0.3 1", "pair_coeff * *"]
         wall_law = f"hertz/history {kn:.6g} {kt:.6g} {gamma:.6g} NULL 0.2 1"
     if is_drum:

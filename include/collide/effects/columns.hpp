@@ -192,6 +192,17 @@ struct clump_push : detail::vector_column {};
 /// By how much it has changed the angular velocity.
 struct clump_turn : detail::vector_column {};
 
+namespace detail {
+
+// changes of a particle's velocity and spin in a step by other particles, and parts of them, and of those by walls:
+// those of tangential forces; see contact_work.hpp
+struct pairs_push : vector_column {};
+struct pairs_turn : vector_column {};
+struct slide_push : vector_column {};
+struct slide_turn : vector_column {};
+
+}  // namespace detail
+
 /// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
 struct global_number {
   template <class S>

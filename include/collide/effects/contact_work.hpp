@@ -17,14 +17,9 @@ struct sum_column {
   using value = double;
 };
 
-// changes of a particle's velocity and spin in a step, by other particles and by walls
-struct pairs_push : vector_column {};
-struct pairs_turn : vector_column {};
+// changes of a particle's velocity and spin in a step by walls
 struct walls_push : vector_column {};
 struct walls_turn : vector_column {};
-// parts of them: those of tangential forces
-struct slide_push : vector_column {};
-struct slide_turn : vector_column {};
 // work over mass: of forces along normals, of tangential ones, of other torques
 struct walls_give : vector_column {};
 struct next_kick_takes : vector_column {};  ///< the kick with which the next step begins
@@ -52,8 +47,8 @@ struct wall_work : detail::sum_column {};
 /// and after it, and is next to the way of the step. So with `velocity_verlet` energies of motion and in `gravity`, and
 /// the work taken, less that given, stay the same to rounding, whatever dt is. What is taken from a particle that
 /// presses on a wall is what it loses against the wall. After `set` the first half kick is
-/// not counted, after `assign` of places it is that of the old ones. 25 scalars and 32 bytes a particle, and as much in
-/// the lists of neighbours.
+/// not counted, after `assign` of places it is that of the old ones. 25 scalars and 32 bytes a particle, and 6 scalars
+/// in the lists of neighbours.
 ///
 /// \tparam Materials  whose masses: `one_density`, or that of `granular_contact`
 template <class Materials = one_density>
@@ -69,7 +64,7 @@ struct contact_work {
   static constexpr bool saves_parameters = detail::saves_parameters<Materials>;
 
   Materials made_of{};          ///< densities
-  double arm_shortening = 0.5;  ///< as of `granular_contact`: which torques are those of tangential forces
+  double arm_shortening = 0.5;  ///< as of `granular_contact`: which torques of walls are those of tangential forces
 
   void check_parameters() const {
     made_of.check_parameters();
@@ -90,22 +85,20 @@ struct contact_work {
       space.fill(column, 0, 3 * state.size * sizeof(S));
   }
   template <class Particle, class Seen, class S>
-  COLLIDE_HD_INLINE void on_pair_contact(Particle& p, Seen const& self, Seen const& other, S) const {
-    using namespace detail;
-    vec3<S> const between = self[position{}] - other[position{}];
-    S const distance = sqrt_rn(dot(between, between));
-    vec3<S> const normal = distance > 0 ? vec3<S>(between * (1 / distance)) : vec3<S>(S(0), S(0), S(1));
-    take(p, self, p[pairs_push{}], p[pairs_turn{}], normal, self.radius() + other.radius() - distance);
-  }
-  template <class Particle, class Seen, class S>
   COLLIDE_HD_INLINE void on_mesh_overlap(Particle& p, Seen const& self, mesh_overlap<S> const& wall, S) const {
     using namespace detail;
     S const r = self.radius(), inertia = S(0.4) * r * r;  // over mass
-    change_by<S> const by = take(p, self, p[walls_push{}], p[walls_turn{}], wall.normal, wall.overlap);
+    vec3<S> const all = p[velocity{}] - self[velocity{}], all_turn = p[angular_velocity{}] - self[angular_velocity{}],
+                  push = all - p[walls_push{}], turn = all_turn - p[walls_turn{}],  // by this wall
+        slide = push - wall.normal * dot(push, wall.normal);
+    S const arm = r - S(arm_shortening) * wall.overlap, times = dot(turn, turn) > 0 ? S(2.5) * arm / (r * r) : S(0);
+    vec3<S> const slide_by = cross(slide, wall.normal) * times;
+    p[walls_push{}] = all, p[walls_turn{}] = all_turn;
+    p[slide_push{}] += slide, p[slide_turn{}] += slide_by;
     vec3<S> const w = wall.surface_turning;
     vec3<S> const v = wall.surface_velocity + cross(w, vec3<S>(wall.normal * (r - wall.overlap)));  // at the centre
-    p[walls_give{}] += vec3<S>(dot(by.push - by.slide, v), dot(by.slide, v) + dot(by.slide_turn, w) * inertia,
-                               dot(by.turn - by.slide_turn, w) * inertia);
+    p[walls_give{}] += vec3<S>(dot(push - slide, v), dot(slide, v) + dot(slide_by, w) * inertia,
+                               dot(turn - slide_by, w) * inertia);
   }
   template <class Particle, class Forces, class S>
   COLLIDE_HD_INLINE void end_step(Particle& p, Forces const& forces, [[maybe_unused]] S dt) const {
@@ -143,32 +136,9 @@ struct contact_work {
   }
 
  private:
-  /// Changes of velocity and spin by a contact, and those by its tangential force.
-  template <class S>
-  struct change_by {
-    vec3<S> push, turn, slide, slide_turn;
-  };
-
   template <class S>
   static COLLIDE_HD_INLINE vec3<double> exact(vec3<S> const& x) {
     return x.template cast<double>();
-  }
-
-  /// Changes by a contact, since all before it had changed velocity and spin by `push` and `turn`.
-  template <class Particle, class Seen, class S>
-  COLLIDE_HD_INLINE change_by<S> take(Particle& p, Seen const& self, vec3<S>& push, vec3<S>& turn,
-                                      vec3<S> const& normal, S overlap) const {
-    using namespace detail;
-    vec3<S> const all = p[velocity{}] - self[velocity{}], all_turn = p[angular_velocity{}] - self[angular_velocity{}];
-    change_by<S> by{all - push, all_turn - turn, {}, {}};
-    push = all, turn = all_turn;
-    by.slide = by.push - normal * dot(by.push, normal);
-    S const r = self.radius(), arm = r - S(arm_shortening) * overlap;
-    bool const turns = dot(by.turn, by.turn) > 0;
-    by.slide_turn = cross(by.slide, normal) * (turns ? S(2.5) * arm / (r * r) : S(0));
-    p[slide_push{}] += by.slide;
-    p[slide_turn{}] += by.slide_turn;
-    return by;
   }
 };
 

@@ -50,6 +50,7 @@ struct granular_contact {
   using reads = detail::union_of<columns<position>, typename Materials::reads>;
   using optional_reads = columns<clump_mass>;
   using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;
+  using optional_writes = std::conditional_t<turns, columns<detail::slide_push, detail::slide_turn>, columns<>>;
   using remembers = typename detail::contact_columns_of<
       detail::union_of<columns<>, detail::remembers_of<Tangential>, detail::remembers_of<Rolling>,
                        detail::remembers_of<Cohesion>>>::type;
@@ -159,11 +160,16 @@ struct granular_contact {
   COLLIDE_HD_INLINE void give(V& v, [[maybe_unused]] V& spin, Action const& by, [[maybe_unused]] S radius,
                               S impulse) const {
     if constexpr (turns) {
-      S const arm = radius - S(arm_shortening) * by.overlap;
-      V const torque = by.twist * arm + by.torque;
+      V const torque = by.twist * arm_of(by, radius) + by.torque;
       spin += torque * (S(2.5) * impulse / (radius * radius));
     }
     v += by.force * impulse;
+  }
+  /// The part of that by tangential forces.
+  template <class V, class Action, class S>
+  COLLIDE_HD_INLINE void give_aside(V& v, V& spin, Action const& by, S radius, S impulse) const {
+    v += by.aside * impulse;
+    spin += by.twist * arm_of(by, radius) * (S(2.5) * impulse / (radius * radius));
   }
 
   template <class Particle, class Seen, class S, std::enable_if_t<is_memoryless && sizeof(S) != 0, int> = 0>
@@ -186,6 +192,11 @@ struct granular_contact {
   }
 
  private:
+  template <class Action, class S>
+  COLLIDE_HD_INLINE S arm_of(Action const& by, S radius) const {
+    return radius - S(arm_shortening) * by.overlap;
+  }
+
   /// In place of the memory of a contact.
   template <class S>
   struct no_memory {
@@ -307,6 +318,9 @@ struct granular_contact {
     auto const action = act_with(n, c, of, memory);
     if constexpr (turns) {
       give(p[velocity{}], p[angular_velocity{}], action, c.own_radius, impulse);
+      if constexpr (Particle::template has<detail::slide_push>) {
+        if (!c.is_wall) give_aside(p[detail::slide_push{}], p[detail::slide_turn{}], action, c.own_radius, impulse);
+      }
     } else {
       give(p[velocity{}], p[velocity{}], action, c.own_radius, impulse);
     }
@@ -321,10 +335,10 @@ struct granular_contact {
     a.force = c.normal * n.total(c);
     a.overlap = c.overlap;
     if constexpr (turns) {
-      vec3<P> const aside = tangential.force(c, of, n, memory);
+      a.aside = tangential.force(c, of, n, memory);
       a.torque = rolling.torque(c, of, n, memory);
-      a.force += aside;
-      a.twist = detail::cross(aside, c.normal);
+      a.force += a.aside;
+      a.twist = detail::cross(a.aside, c.normal);
     }
     return a;
   }

@@ -21,7 +21,7 @@ namespace collide {
 struct sphere_contact {
   using reads = columns<position>;
   using writes = columns<velocity>;
-  using optional_writes = columns<angular_velocity>;
+  using optional_writes = columns<angular_velocity, detail::slide_push, detail::slide_turn>;
 
   double stiffness = 1000;        ///< force per overlap, not negative
   double damping = 0;             ///< force per speed along the normal, not negative
@@ -104,8 +104,14 @@ struct sphere_contact {
         S const tangential_force = detail::min(S(tangential_damping) * speed, S(friction) * normal_force);
         vec3<S> const drag = slip * (tangential_force / speed);
         force -= drag;
-        if constexpr (spins)
-          p[angular_velocity{}] += detail::cross(n, drag) * (S(2.5) * inverse_mass / r * fraction * dt);
+        if constexpr (spins) {
+          vec3<S> const turn = detail::cross(n, drag) * (S(2.5) * inverse_mass / r * fraction * dt);
+          p[angular_velocity{}] += turn;
+          if constexpr (Particle::template has<detail::slide_push>) {
+            p[detail::slide_push{}] -= drag * (inverse_mass * dt);
+            p[detail::slide_turn{}] += turn;
+          }
+        }
       }
     }
     p[velocity{}] += force * (inverse_mass * dt);

@@ -9,6 +9,7 @@
 
 #include <collide/bucket.cuh>
 #include <collide/effects/bodies.hpp>
+#include <collide/effects/contact_work.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/integrators.hpp>
@@ -62,12 +63,12 @@ struct push_by_number {
 };
 
 /// All that a simulation is after some steps, with a restart in between.
-template <class S, class Law, class Space>
-std::string played(Space const& space, Law const& law, heap const& of) {
+template <class S, class Law, class Space, class... Effect>
+std::string played(Space const& space, Law const& law, heap const& of, Effect const&... effects) {
   using made_type = simulation<detector<bucket, karabassi<>, Space, S>, polydisperse, gravity, push_by_number, Law,
-                               velocity_verlet, moving_bodies<>>;
+                               velocity_verlet, moving_bodies<>, Effect...>;
   made_type made(space, polydisperse{}, gravity{0, 0, -9.81}, push_by_number{}, law, velocity_verlet{},
-                 moving_bodies<>{});
+                 moving_bodies<>{}, effects...);
   std::vector<S> const floor{-1, -1, -S(0.001), 2, -1, -S(0.001), -1, 2, -S(0.001)};
   std::vector<S> const x(of.centres.begin(), of.centres.end()), v(of.velocities.begin(), of.velocities.end()),
       r(of.radii.begin(), of.radii.end());
@@ -87,12 +88,12 @@ std::string played(Space const& space, Law const& law, heap const& of) {
   return all;
 }
 
-template <class S, class Law>
-void check_once_a_pair(Law const& law) {
+template <class S, class Law, class... Effect>
+void check_once_a_pair(Law const& law, Effect const&... effects) {
   heap const of(7);
-  std::string const expected = played<S>(tests::lockstep<64, true>(), law, of);
+  std::string const expected = played<S>(tests::lockstep<64, true>(), law, of, effects...);
   CHECK(expected.size() > of.radii.size());
-  for (int threads : {1, 3}) CHECK(played<S>(host(threads), law, of) == expected);
+  for (int threads : {1, 3}) CHECK(played<S>(host(threads), law, of, effects...) == expected);
 }
 
 }  // namespace
@@ -112,4 +113,13 @@ TEST_CASE("once a pair: laws have the bits that they have where each particle as
   check_once_a_pair<float>(granular_contact<linear, cundall_strack, none, sjkr, materials<2>>{two_solids()});
   check_once_a_pair<double>(granular_contact<linear, dashpot>{soft, {}, {0.01}});
   check_once_a_pair<double>(granular_contact<hertz>{soft});
+}
+
+TEST_CASE("once a pair: contact_work has the bits that it has where each particle asks for itself") {
+  one_material const soft({1e7, 0.3, 2500}, {0.5, 0.3, 0.1, 0.1});
+  contact_work<> const work{{2500}};
+  check_once_a_pair<double>(granular_contact<hertz, mindlin, epsd, none, materials<2>>{two_solids()},
+                            contact_work<materials<2>>{two_solids()});
+  check_once_a_pair<float>(granular_contact<hertz, mindlin_rescale>{soft}, work);
+  check_once_a_pair<double>(granular_contact<linear>{soft}, work);
 }

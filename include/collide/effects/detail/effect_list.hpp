@@ -174,7 +174,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using source = typename first_of<absent, choice<is_source<E>, E>...>::type;
   using mutual_effect = typename first_of<absent, choice<is_mutual_effect<E>, E>...>::type;
   static constexpr bool may_be_reordered = false;  ///< see cell_order.hpp
-  static constexpr unsigned action_width = mutual_effect::action_width;
+  static constexpr unsigned action_width =
+      mutual_effect::action_width > 4 && contains<all, slide_push> ? 13 : mutual_effect::action_width;
   /// Calls f(effect) for the one, on the host.
   template <class F>
   void for_mutual(F const& f) const {

@@ -13,21 +13,23 @@ struct meeting_sphere {
   P radius, density;
 };
 
-/// The action of another sphere on a sphere: a force, the torque of its tangential part for an arm of 1, and another
-/// torque.
+/// The action of another sphere on a sphere: a force, its tangential part, the torque of that for an arm of 1, and
+/// another torque.
 template <class P>
 struct sphere_action {
-  vec3<P> force, twist, torque;
+  vec3<P> force, aside, twist, torque;
   P overlap;
   mask_of<P> is_there;  ///< the two do anything to each other
 
-  /// f(number, k) for the first `Width` numbers, number k: 4 without torques, 7 without the other torque, or 10.
+  /// f(number, k) for the first `Width` numbers, number k: 4 without torques, 7 without the other torque, 10 without the
+  /// tangential part, or 13.
   template <unsigned Width, class F>
   COLLIDE_HD_INLINE void for_each_number(F const& f) {
     for (unsigned k = 0; k < 3; ++k) {
       f(force[k], k);
       if (Width > 4) f(twist[k], 4 + k);
       if (Width > 7) f(torque[k], 7 + k);
+      if (Width > 10) f(aside[k], 10 + k);
     }
     f(overlap, 3u);
   }
@@ -54,7 +56,7 @@ struct alignas(8 * sizeof(S)) stored_motion {
 /// An action on one of two spheres as it is read: vectors are rows of four numbers.
 template <class S>
 struct read_action {
-  row_of<S> force, twist, torque;
+  row_of<S> force, aside, twist, torque;
   S overlap;
 };
 
@@ -66,9 +68,11 @@ struct alignas(Width == 7 ? 8 * sizeof(S) : sizeof(S)) stored_action {
   /// As it acts on the first or the `second` of the two. Of what is 0 the sign stays. Up to a number behind is read.
   COLLIDE_HD_INLINE read_action<S> on(bool second) const {
     constexpr S zero[4] = {};
-    read_action<S> action{opposite_if(second, load_row(numbers)), load_row(zero), load_row(zero), numbers[3]};
+    row_of<S> const none = load_row(zero);
+    read_action<S> action{opposite_if(second, load_row(numbers)), none, none, none, numbers[3]};
     if constexpr (Width > 4) action.twist = load_row(numbers + 4);
     if constexpr (Width > 7) action.torque = opposite_if(second, load_row(numbers + 7));
+    if constexpr (Width > 10) action.aside = opposite_if(second, load_row(numbers + 10));
     return action;
   }
 };

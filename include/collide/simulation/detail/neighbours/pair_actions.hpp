@@ -289,13 +289,18 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
       using effect_type = std::decay_t<decltype(effect)>;
       S const* const motion = items.motions[i].numbers;
       row_of<S> v = load_row(motion), spin = load_row(motion + 4);
+      constexpr S zero[4] = {};
+      [[maybe_unused]] row_of<S> slide = load_row(zero), slide_by = load_row(zero);
       meeting_sphere<S> self;
       self.radius = places.spheres[i].radius, self.density = motion[3];
       particle_access<effect_type, interaction> const seen(p.self);
       S const impulse = this->dt * effect_type::template of_clump<S>(seen) / effect_type::mass_of(self);
       auto const take = [&] {
-        for (std::uint32_t k = 0; k < size; ++k)
-          effect.give(v, spin, items.actions[acting[k] >> 1].on((acting[k] & 1) != 0), self.radius, impulse);
+        for (std::uint32_t k = 0; k < size; ++k) {
+          auto const by = items.actions[acting[k] >> 1].on((acting[k] & 1) != 0);
+          effect.give(v, spin, by, self.radius, impulse);
+          if constexpr (tells_slide) effect.give_aside(slide, slide_by, by, self.radius, impulse);
+        }
         size = 0;
       };
       for (std::uint32_t k = items.entry_firsts[i]; k < end; ++k) {
@@ -309,6 +314,7 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
       take();
       p.changed[velocity{}] = vector_of(v);
       if constexpr (effect_type::turns) p.changed[angular_velocity{}] = vector_of(spin);
+      if constexpr (tells_slide) p.changed[slide_push{}] = vector_of(slide), p.changed[slide_turn{}] = vector_of(slide_by);
     });
     p.met = (marks & items.meets) != 0;
     if (p.met) mark_contact(p.changed);
@@ -319,6 +325,7 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
   using base = pair_interaction<S, without_memory<Effects>>;
   using interaction = typename base::interaction;
   using pair_state = typename base::pair_state;
+  static constexpr bool tells_slide = Effects::action_width > 10;  ///< to `contact_work`
 
   /// A particle, as far as `store` asks.
   COLLIDE_HD_INLINE interaction own(std::size_t i) const {

@@ -88,8 +88,10 @@ struct pair_interaction {
     bool const met = p.met && p.self[position{}].x() != std::numeric_limits<S>::max();
     bool is_asleep = false;
     if constexpr (Effects::keeps_support) is_asleep = is_inactive(p.self) && is_inactive(p.changed);
-    if (met && what == meeting::in_step && !is_asleep)
+    if (met && what == meeting::in_step && !is_asleep) {
       state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
+      store_changes(p);
+    }
     if (!met) {
       forget_kicks<Effects>(state, p.self.number);
     } else if constexpr (Effects::keeps_pair_forces) {
@@ -103,6 +105,18 @@ struct pair_interaction {
   }
 
  private:
+  /// For `contact_work`: by how much others change velocity and spin.
+  COLLIDE_HD_INLINE void store_changes([[maybe_unused]] pair_state const& p) const {
+    if constexpr (contains<typename Effects::all, pairs_push>) {
+      particle<S, columns<pairs_push, pairs_turn>> by;
+      set_initial_values(by);
+      by[pairs_push{}] = p.changed[velocity{}] - p.self[velocity{}];
+      if constexpr (contains<typename interaction::list, angular_velocity>)
+        by[pairs_turn{}] = p.changed[angular_velocity{}] - p.self[angular_velocity{}];
+      state.store(by, p.self.number, columns<pairs_push, pairs_turn>{});
+    }
+  }
+
   /// Calls f() while two particles are where they meet: across a side of the box, if space repeats. By how far it moves
   /// the one that changes is added to where that is.
   template <class F>
