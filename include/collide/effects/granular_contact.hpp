@@ -165,10 +165,10 @@ struct granular_contact {
     }
     v += by.force * impulse;
   }
-  /// The part of that by tangential forces.
+  /// The part of that by the tangential force `aside`.
   template <class V, class Action, class S>
-  COLLIDE_HD_INLINE void give_aside(V& v, V& spin, Action const& by, S radius, S impulse) const {
-    v += by.aside * impulse;
+  COLLIDE_HD_INLINE void give_aside(V& v, V& spin, V const& aside, Action const& by, S radius, S impulse) const {
+    v += aside * impulse;
     spin += by.twist * arm_of(by, radius) * (S(2.5) * impulse / (radius * radius));
   }
 
@@ -319,7 +319,8 @@ struct granular_contact {
     if constexpr (turns) {
       give(p[velocity{}], p[angular_velocity{}], action, c.own_radius, impulse);
       if constexpr (Particle::template has<detail::slide_push>) {
-        if (!c.is_wall) give_aside(p[detail::slide_push{}], p[detail::slide_turn{}], action, c.own_radius, impulse);
+        if (!c.is_wall)
+          give_aside(p[detail::slide_push{}], p[detail::slide_turn{}], action.aside, action, c.own_radius, impulse);
       }
     } else {
       give(p[velocity{}], p[velocity{}], action, c.own_radius, impulse);

@@ -56,7 +56,7 @@ struct alignas(8 * sizeof(S)) stored_motion {
 /// An action on one of two spheres as it is read: vectors are rows of four numbers.
 template <class S>
 struct read_action {
-  row_of<S> force, aside, twist, torque;
+  row_of<S> force, twist, torque;
   S overlap;
 };
 
@@ -68,12 +68,15 @@ struct alignas(Width == 7 ? 8 * sizeof(S) : sizeof(S)) stored_action {
   /// As it acts on the first or the `second` of the two. Of what is 0 the sign stays. Up to a number behind is read.
   COLLIDE_HD_INLINE read_action<S> on(bool second) const {
     constexpr S zero[4] = {};
-    row_of<S> const none = load_row(zero);
-    read_action<S> action{opposite_if(second, load_row(numbers)), none, none, none, numbers[3]};
+    read_action<S> action{opposite_if(second, load_row(numbers)), load_row(zero), load_row(zero), numbers[3]};
     if constexpr (Width > 4) action.twist = load_row(numbers + 4);
     if constexpr (Width > 7) action.torque = opposite_if(second, load_row(numbers + 7));
-    if constexpr (Width > 10) action.aside = opposite_if(second, load_row(numbers + 10));
     return action;
+  }
+  /// The tangential part of its force.
+  COLLIDE_HD_INLINE row_of<S> aside_on(bool second) const {
+    static_assert(Width > 10, "it is kept");
+    return opposite_if(second, load_row(numbers + 10));
   }
 };
 

@@ -289,17 +289,21 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
       using effect_type = std::decay_t<decltype(effect)>;
       S const* const motion = items.motions[i].numbers;
       row_of<S> v = load_row(motion), spin = load_row(motion + 4);
+      [[maybe_unused]] row_of<S> slide, slide_by;
       constexpr S zero[4] = {};
-      [[maybe_unused]] row_of<S> slide = load_row(zero), slide_by = load_row(zero);
+      if constexpr (tells_slide) slide = slide_by = load_row(zero);
       meeting_sphere<S> self;
       self.radius = places.spheres[i].radius, self.density = motion[3];
       particle_access<effect_type, interaction> const seen(p.self);
       S const impulse = this->dt * effect_type::template of_clump<S>(seen) / effect_type::mass_of(self);
       auto const take = [&] {
         for (std::uint32_t k = 0; k < size; ++k) {
-          auto const by = items.actions[acting[k] >> 1].on((acting[k] & 1) != 0);
+          auto const& action = items.actions[acting[k] >> 1];
+          bool const second = (acting[k] & 1) != 0;
+          auto const by = action.on(second);
           effect.give(v, spin, by, self.radius, impulse);
-          if constexpr (tells_slide) effect.give_aside(slide, slide_by, by, self.radius, impulse);
+          if constexpr (tells_slide)
+            effect.give_aside(slide, slide_by, action.aside_on(second), by, self.radius, impulse);
         }
         size = 0;
       };
