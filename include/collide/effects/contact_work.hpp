@@ -97,8 +97,8 @@ struct contact_work {
     p[slide_push{}] += slide, p[slide_turn{}] += slide_by;
     vec3<S> const w = wall.surface_turning;
     vec3<S> const v = wall.surface_velocity + cross(w, vec3<S>(wall.normal * (r - wall.overlap)));  // at the centre
-    p[walls_give{}] += vec3<S>(dot(push - slide, v), dot(slide, v) + dot(slide_by, w) * inertia,
-                               dot(turn - slide_by, w) * inertia);
+    p[walls_give{}] +=
+        vec3<S>(dot(push - slide, v), dot(slide, v) + dot(slide_by, w) * inertia, dot(turn - slide_by, w) * inertia);
   }
   template <class Particle, class Forces, class S>
   COLLIDE_HD_INLINE void end_step(Particle& p, Forces const& forces, [[maybe_unused]] S dt) const {

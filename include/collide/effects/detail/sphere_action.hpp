@@ -21,8 +21,8 @@ struct sphere_action {
   P overlap;
   mask_of<P> is_there;  ///< the two do anything to each other
 
-  /// f(number, k) for the first `Width` numbers, number k: 4 without torques, 7 without the other torque, 10 without the
-  /// tangential part, or 13.
+  /// f(number, k) for the first `Width` numbers, number k: 4 without torques, 7 without the other torque, 10 without
+  /// the tangential part, or 13.
   template <unsigned Width, class F>
   COLLIDE_HD_INLINE void for_each_number(F const& f) {
     for (unsigned k = 0; k < 3; ++k) {

@@ -187,18 +187,21 @@ struct meet_once {
       std::uint32_t item[lanes];
       listed_pair pairs[lanes];
       S const* remembers[lanes];
-      S upward[lanes], since[lanes];
+      std::uint8_t marks[lanes];
       for (std::uint32_t l = 0; l < lanes; ++l) {
         item[l] = found[min(first + l, size - 1)];  // the last fill their pack
         pairs[l] = items.pairs[item[l]];
-        std::uint8_t const mark = items.marks[item[l]];
-        bool const was = (mark & items.remembers) != 0;
+        marks[l] = items.marks[item[l]];
         remembers[l] = at_first;
-        if constexpr (remembered_width != 0) remembers[l] = was ? items.records[item[l]].numbers : at_first;
-        upward[l] = (mark & items.is_upward) != 0 ? S(1) : S(-1);
-        since[l] = what != meeting::in_step && !was ? S(0) : dt;
+        if constexpr (remembered_width != 0)
+          remembers[l] = (marks[l] & items.remembers) != 0 ? items.records[item[l]].numbers : at_first;
       }
-      using from = from_lanes<P>;
+      // no arrays of numbers: a pack that is read from what was just written by parts waits for it
+      auto const by_mark = [&](std::uint8_t bit, S without, S with) {
+        S const either_of[2] = {without, with};
+        return from_lanes<P>::of([&](int l) { return either_of[(marks[l] & bit) != 0]; });
+      };
+      P const since = what == meeting::in_step ? P(dt) : by_mark(items.remembers, S(0), dt);
       meeting_sphere<P> a, b;
       load(pairs, a, b);
       contact_values<P, remembered> values;
@@ -207,9 +210,8 @@ struct meet_once {
         load_rows(columns, [&](int l) { return remembers[l]; });
         values.for_each_number([&](P& x, int c, int) { x = columns[c]; });
       }
-      contact_access<remembered, contact_values<P, remembered>, P> const memory(
-          values, from::of([&](int l) { return since[l]; }));
-      sphere_action<P> const action = effect.act(a, b, from::of([&](int l) { return upward[l]; }), of, memory);
+      contact_access<remembered, contact_values<P, remembered>, P> const memory(values, since);
+      sphere_action<P> const action = effect.act(a, b, by_mark(items.is_upward, S(-1), S(1)), of, memory);
       keep(item, action, values);
     }
   }
@@ -243,8 +245,9 @@ struct meet_once {
 
   COLLIDE_HD_INLINE void keep(std::uint32_t const (&item)[lanes], sphere_action<P> action,
                               contact_values<P, remembered>& values) const {
-    constexpr unsigned width = Effects::action_width;
-    P numbers[(width + 3) / 4 * 4] = {};
+    constexpr unsigned width = Effects::action_width, padded = (width + 3) / 4 * 4;
+    P numbers[padded];
+    for (unsigned n = width; n < padded; ++n) numbers[n] = 0;
     action.template for_each_number<width>([&](P& x, unsigned n) { numbers[n] = x; });
     store_rows<width>(numbers, [&](int l) { return items.actions[item[l]].numbers; });
     bool const in_step = what == meeting::in_step;
@@ -318,7 +321,8 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
       take();
       p.changed[velocity{}] = vector_of(v);
       if constexpr (effect_type::turns) p.changed[angular_velocity{}] = vector_of(spin);
-      if constexpr (tells_slide) p.changed[slide_push{}] = vector_of(slide), p.changed[slide_turn{}] = vector_of(slide_by);
+      if constexpr (tells_slide)
+        p.changed[slide_push{}] = vector_of(slide), p.changed[slide_turn{}] = vector_of(slide_by);
     });
     p.met = (marks & items.meets) != 0;
     if (p.met) mark_contact(p.changed);
