@@ -43,12 +43,12 @@ struct rolling_work : detail::sum_column {};
 struct wall_work : detail::sum_column {};
 
 /// Sums up the work of each particle's contacts, of `granular_contact` or `sphere_contact` before it in the list;
-/// `energy` makes of it what was lost. A half kick of contacts has their force times the mean of the velocities before
-/// and after it, and is next to the way of the step. So with `velocity_verlet` energies of motion and in `gravity`, and
-/// the work taken, less that given, stay the same to rounding, whatever dt is. What is taken from a particle that
-/// presses on a wall is what it loses against the wall. After `set` the first half kick is
-/// not counted, after `assign` of places it is that of the old ones. 25 scalars and 32 bytes a particle, and 6 scalars
-/// in the lists of neighbours.
+/// `energy` makes of it what was lost. Forces of other effects between particles count as along normals. A half kick of
+/// contacts has their force times the mean of the velocities before and after it, and is next to the way of the step.
+/// So with `velocity_verlet` energies of motion and in `gravity`, and the work taken, less that given, stay the same to
+/// rounding, whatever dt is. What is taken from a particle that presses on a wall is what it loses against the wall.
+/// After `set` the first half kick is not counted, after `assign` of places it is that of the old ones. 25 scalars and
+/// 32 bytes a particle, and on a GPU 6 scalars in the lists of neighbours.
 ///
 /// \tparam Materials  whose masses: `one_density`, or that of `granular_contact`
 template <class Materials = one_density>
