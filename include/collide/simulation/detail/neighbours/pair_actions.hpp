@@ -293,8 +293,10 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
       S const* const motion = items.motions[i].numbers;
       row_of<S> v = load_row(motion), spin = load_row(motion + 4);
       [[maybe_unused]] row_of<S> slide, slide_by;
-      constexpr S zero[4] = {};
-      if constexpr (tells_slide) slide = slide_by = load_row(zero);
+      if constexpr (tells_slide) {
+        constexpr S zero[4] = {};
+        slide = slide_by = load_row(zero);
+      }
       meeting_sphere<S> self;
       self.radius = places.spheres[i].radius, self.density = motion[3];
       particle_access<effect_type, interaction> const seen(p.self);
