@@ -124,7 +124,7 @@ TEST_CASE("simulation: on the GPU, steps can be captured in a graph, with the sa
   // spheres that meet: a graph that is replayed while lists of neighbours are kept, and when they are made anew
   using meets = simulation<tests::meets_mesh<cuda_shared>, gravity, collide::sphere_contact, bounce>;
   auto const contact = collide::sphere_contact::from_restitution(0.5, 4e-3, 0.06, 1000, 0.5);
-  check_captured<meets>(tests::crowd<float>(2000, 1, 0.06, 3, 12), 2e-4f, 2, 300, 18, gravity{}, contact, bounce{});
+  check_captured<meets>(tests::crowd<float>(2000, 1, 0.06, 3, 12), 2e-4f, 2, 300, 16, gravity{}, contact, bounce{});
 }
 
 TEST_CASE("simulation: on the GPU, bytes are what it has taken, and once there is room nothing is allocated") {
