@@ -73,4 +73,11 @@ class particle_access {
   Particle& p_;
 };
 
+/// True of a sphere of a clump, which moves as that does (clump_motion.hpp).
+template <class Particle>
+COLLIDE_HD_INLINE bool is_of_clump([[maybe_unused]] Particle const& p) {
+  if constexpr (contains<typename Particle::list, in_clump>) return p[in_clump{}] != no_id;
+  return false;
+}
+
 }  // namespace collide::detail

@@ -18,13 +18,6 @@ COLLIDE_HD_INLINE void for_each_support(Particle& p, F const& f) {
   }
 }
 
-/// True of a sphere of a clump, which moves as that does (clump_motion.hpp).
-template <class Particle>
-COLLIDE_HD_INLINE bool is_of_clump([[maybe_unused]] Particle const& p) {
-  if constexpr (contains<typename Particle::list, in_clump>) return p[in_clump{}] != no_id;
-  return false;
-}
-
 /// Keeps a mean of what the mesh gives to a particle in a step, for when the particle sleeps.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void keep_support([[maybe_unused]] Context const& context, [[maybe_unused]] Particle& p,
