@@ -2,13 +2,13 @@
 /// Sphere-steps a second of granular contact: granular_bench [host|device] [LARGEST] [SMALLEST] [STEPS]
 ///
 /// Spheres of one size in a box of twelve triangles, in double: from SMALLEST (1,000) to LARGEST (10,000,000, on the
-/// host 100,000) of them: `packed`, a cubic lattice shaken by a little, in which most touch five others; and `loose`,
-/// where few are near others; and `clumps`, a lattice of triangles of three spheres each, in which all touch. Laws with
-/// and without memory, with rolling, with cohesion. Prints a line of JSON for
-/// each: microseconds a step (the least of five times as many steps as asked for, 100), sphere-steps a second, bytes a
-/// sphere, and how many others a sphere touches in the mean, -1 of more than 100,000. On the host, time is that of one
-/// processor; on a device, between events. Built by hand: nvcc -x cu -std=c++17 -O3 -arch=sm_90 -fmad=false
-/// --expt-relaxed-constexpr -Iinclude -Iexamples -Ibench, or with g++ for the host.
+/// host 100,000) of them: `packed`, a cubic lattice shaken by a little, in which most touch five others; `loose`, where
+/// few are near others; and `clumps`, a lattice of clumps of three spheres, in which all touch. Laws with and without
+/// memory, with rolling, with cohesion. Prints a line of JSON for each: microseconds a step (the least of five times as
+/// many steps as asked for, 100), sphere-steps a second, bytes a sphere, and how many others a sphere touches in the
+/// mean, -1 of more than 100,000. On the host, time is that of one processor; on a device, between events. Built by
+/// hand: nvcc -x cu -std=c++17 -O3 -arch=sm_90 -fmad=false --expt-relaxed-constexpr -Iinclude -Iexamples -Ibench, or
+/// with g++ for the host.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
