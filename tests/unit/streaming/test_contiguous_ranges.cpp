@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detectors/detail/chunk_streamer.cuh>
+#include <collide/detectors/detail/contiguous_ranges.hpp>
 #include <collide/spheres.hpp>
 
 namespace {

@@ -1,5 +1,5 @@
 /// Spheres in chunks, on the host.
-#include <collide/detectors/detail/chunk_streamer.cuh>
+#include <collide/detectors/detail/contiguous_ranges.hpp>
 
 #include "compositions.hpp"
 #include "streaming/streamed.hpp"
