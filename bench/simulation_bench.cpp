@@ -305,7 +305,6 @@ void add_all(suite<Space> const& scene) {
   scene.add("gravity, bounce, friction, spin", gravity{}, bounce{}, friction{}, spin{});
   scene.add("gravity, bounce, adhesion", gravity{}, bounce{}, adhesion{});
   scene.add("sleep, gravity, bounce", collide::sleep{}, gravity{}, bounce{});
-  scene.add("sleep, gravity, bounce: all asleep", collide::sleep{1e30, 5}, gravity{}, bounce{});
   scene.add("gravity, absorb", gravity{}, absorb{});
   scene.add("emit, gravity, bounce", emit{1e5, {}}, gravity{}, bounce{});
   scene.add("gravity, bounce, reaction", gravity{}, bounce{}, scene.reaction());
@@ -318,6 +317,7 @@ void add_all(suite<Space> const& scene) {
   scene.add("sphere_contact, gravity, bounce", soft, gravity{}, bounce{});
   scene.add_packed("sphere_contact, gravity", contact, gravity{});
   scene.add_packed("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
+  scene.add_packed("sleep, sphere_contact, gravity: all asleep", collide::sleep{1e30, 1}, contact, gravity{});
   scene.add_mixing("packed, mixing: sphere_contact, gravity, box_walls", 10, contact, gravity{}, scene.around_packed());
   scene.add_mixing("packed, fast: sphere_contact, gravity, box_walls", 2000, contact, gravity{}, scene.around_packed());
 }

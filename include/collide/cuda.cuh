@@ -49,6 +49,13 @@ __device__ __forceinline__ void pdl_wait() {
 #endif
 }
 
+/// True for a kernel whose few blocks have much to do: the threads of each work together even where those of others are
+/// on their own. That is its member `is_cooperative`.
+template <class Kernel, class = void>
+inline constexpr bool is_cooperative = false;
+template <class Kernel>
+inline constexpr bool is_cooperative<Kernel, std::enable_if_t<Kernel::is_cooperative>> = true;
+
 /// Runs a kernel in one thread per block.
 template <class Block, class Kernel>
 __global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<Kernel, Block>))
@@ -241,6 +248,16 @@ class cuda_space {
     cuda_check(cudaLaunchKernelEx(&config, kernel, arguments...), call);
   }
 
+  /// Launches a kernel functor whose blocks are CUDA blocks.
+  template <class Block, class Kernel>
+  void launch_blocks(std::size_t blocks, Kernel const& kernel) const {
+    if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+      throw error("collide: too much work for one CUDA launch");
+    }
+    launch_kernel("launch of run_blocks", run_blocks<Block, Kernel>, static_cast<unsigned>(blocks), threads_per_block,
+                  kernel);
+  }
+
   static unsigned grid_of(std::size_t n, int threads) {
     std::size_t const each = static_cast<std::size_t>(threads), blocks = (n + each - 1) / each;
     if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
@@ -267,12 +284,15 @@ class cuda : public detail::cuda_space {
   static constexpr char const* name() { return "cuda"; }
 
   template <class Kernel>
-  using block = detail::serial_block<Kernel::items, 0>;
+  using block = std::conditional_t<detail::is_cooperative<Kernel>, detail::cuda_block<Kernel::items>,
+                                   detail::serial_block<Kernel::items, 0>>;
 
-  /// Puts a kernel on the stream that runs `kernel` once for each of `blocks` blocks. Throws `cuda_error`.
+  /// Puts a kernel on the stream that runs `kernel` once for each of `blocks` blocks. Throws `cuda_error`, and `error`
+  /// if threads work together in 2^31 blocks or more.
   template <class Kernel>
   void launch(std::size_t blocks, Kernel const& kernel) const {
     if (blocks == 0) return;
+    if constexpr (detail::is_cooperative<Kernel>) return launch_blocks<block<Kernel>>(blocks, kernel);
     launch_kernel("launch of run_threads", detail::run_threads<block<Kernel>, Kernel>,
                   grid_of(blocks, detail::threads_per_block), detail::threads_per_block, blocks, kernel);
   }
@@ -285,6 +305,12 @@ class cuda : public detail::cuda_space {
   std::size_t max_resident_blocks() const {
     return std::numeric_limits<std::size_t>::max();
   }
+};
+
+/// A thread that is alone with the candidates of its spheres is waited for.
+template <>
+struct bucket_tuning<cuda> : device_bucket_tuning {
+  static constexpr bucket_costs costs{0.12f, 0.004f, 0.06f, 0.04f, 7, 0, 0, 524288};
 };
 
 /// By what `automatic` chooses in `cuda`: measured on an H100.
@@ -310,12 +336,7 @@ class cuda_shared : public detail::cuda_space {
   /// if there are 2^31 blocks or more.
   template <class Kernel>
   void launch(std::size_t blocks, Kernel const& kernel) const {
-    if (blocks == 0) return;
-    if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-      throw error("collide: too much work for one CUDA launch");
-    }
-    launch_kernel("launch of run_blocks", detail::run_blocks<block<Kernel>, Kernel>, static_cast<unsigned>(blocks),
-                  detail::threads_per_block, kernel);
+    if (blocks != 0) launch_blocks<block<Kernel>>(blocks, kernel);
   }
 
   /// How many blocks keep the device busy.

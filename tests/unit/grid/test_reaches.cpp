@@ -17,11 +17,27 @@ struct never_waits : lanes {
   }
 };
 
+/// A device of which nobody waits for a single thread, and one where that takes as long as very many spheres.
+struct all_alike : lanes {
+  using lanes::lanes;
+};
+struct one_slow : lanes {
+  using lanes::lanes;
+};
+
 }  // namespace
 
 namespace collide {
 template <>
 struct bucket_tuning<never_waits> : device_bucket_tuning {};
+template <>
+struct bucket_tuning<all_alike> : device_bucket_tuning {
+  static constexpr bucket_costs costs{0.12f, 0.004f, 0.06f, 0.04f, 7, 0, 0, 0};
+};
+template <>
+struct bucket_tuning<one_slow> : device_bucket_tuning {
+  static constexpr bucket_costs costs{0.12f, 0.004f, 0.06f, 0.04f, 7, 0, 0, 99000};
+};
 }  // namespace collide
 
 TEST_CASE("reaches: spheres whose radii change have the pairs of all pairs, on the host") {
@@ -65,17 +81,29 @@ TEST_CASE("reaches: a device that is asked for spheres of many radii is not wait
   }
 }
 
+namespace {
+
+/// The width of the cells that so many spheres get in a space.
+template <class Space>
+float width_for(tests::many_radii const& scene, std::size_t spheres) {
+  Space space;
+  collide::bucket::index<float> index;
+  index.build(space, {}, scene.mesh());
+  index.prepare(space, {}, collide::spheres_xyz(scene.centres.data(), spheres, 0.01f));
+  CHECK(*index.mesh_lookup().total <= index.mesh_lookup().capacity);
+  return index.mesh_lookup().grids[0].width;
+}
+
+}  // namespace
+
 TEST_CASE("reaches: a large mesh gets narrower cells for few spheres, as these cost little there") {
-  float widths[2];
-  for (std::size_t const more : {0u, 1u}) {
-    std::size_t const triangles = (std::size_t{1} << 18) + more;
-    tests::many_radii const scene(triangles, 1000, 1);
-    lanes space;
-    collide::bucket::index<float> index;
-    index.build(space, {}, scene.mesh());
-    index.prepare(space, {}, collide::spheres_xyz(scene.centres.data(), 1000, 0.01f));
-    widths[more] = index.mesh_lookup().grids[0].width;
-    CHECK(*index.mesh_lookup().total <= index.mesh_lookup().capacity);
-  }
-  CHECK(widths[1] < 0.9f * widths[0]);
+  tests::many_radii const small(std::size_t{1} << 18, 10000, 1), large((std::size_t{1} << 18) + 1, 10000, 1);
+  CHECK(width_for<lanes>(large, 10000) < 0.9f * width_for<lanes>(small, 10000));
+}
+
+TEST_CASE("reaches: where the slowest thread is waited for few spheres get cells as narrow as many") {
+  tests::many_radii const scene(2000, 100000, 1);
+  float const few = width_for<all_alike>(scene, 1000), many = width_for<all_alike>(scene, 100000);
+  CHECK(many < 0.7f * few);
+  CHECK(width_for<one_slow>(scene, 1000) == many);
 }

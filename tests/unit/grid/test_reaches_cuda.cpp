@@ -8,6 +8,21 @@ TEST_CASE("reaches: spheres whose radii change have the pairs of all pairs, on t
   tests::check_changing_radii(collide::cuda_shared());
 }
 
+TEST_CASE("reaches: where each thread is alone few spheres get narrower cells, on the device") {
+  tests::many_radii const scene(20000, 1000, 1);
+  collide::cuda const alone;
+  auto const mesh = collide::upload(alone, scene.mesh());
+  auto const spheres = collide::upload(alone, scene.spheres(0));
+  auto const width_in = [&](auto const& space) {
+    collide::detector<collide::bucket, collide::karabassi<>, std::decay_t<decltype(space)>> detector(space);
+    collide::any_hit sink;
+    detector.build(mesh.view());
+    detector.query(spheres.view(), sink);
+    return detector.cell_width();
+  };
+  CHECK(width_in(alone) < 0.7 * width_in(collide::cuda_shared()));
+}
+
 TEST_CASE("few: spheres of many radii, first and again, on the GPU") {
   tests::many_radii const scene(100, 3000, 1000);
   tests::check_changing_radii<collide::karabassi<>>(collide::cuda_shared(), scene);

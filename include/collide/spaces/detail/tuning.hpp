@@ -16,11 +16,12 @@ struct bucket_costs {
   float serial_ns;      ///< to enter the largest triangle into another cell, which one block does while others are done
   float thin_ns;        ///< to look closer at a triangle that fills a small part of its box
   float thin_entry_ns;  ///< to enter such a triangle, more than another
+  float waiting;        ///< the slowest thread takes as long as all do for so many spheres
 };
 
 /// How `bucket` works on a host: one core after the other waits for the memory.
 struct host_bucket_tuning {
-  static constexpr bucket_costs costs{30, 0.3f, 10, 3, 0, 6, 120};
+  static constexpr bucket_costs costs{30, 0.3f, 10, 3, 0, 6, 120, 0};
   /// True if many spheres are sorted into the cells, and triangles look for them, rather than the other way round.
   /// Needs memory that the host can access, and blocks of one thread with 64 items.
   static constexpr bool bins_spheres = true;
@@ -28,7 +29,7 @@ struct host_bucket_tuning {
 
 /// How `bucket` works on a device, with many threads.
 struct device_bucket_tuning {
-  static constexpr bucket_costs costs{0.12f, 0.004f, 0.06f, 0.04f, 7, 0, 0};
+  static constexpr bucket_costs costs{0.12f, 0.004f, 0.06f, 0.04f, 7, 0, 0, 16384};
   static constexpr bool bins_spheres = false;
 };
 

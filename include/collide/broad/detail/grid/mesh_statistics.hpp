@@ -164,6 +164,7 @@ struct grid_reaches {
 template <class S>
 struct choose_reaches {
   static constexpr int items = 1;
+  static constexpr bool is_cooperative = true;
 
   size_histogram const* radii;
   grid_reaches<S>* chosen;  ///< in: those that are there, unless all are made anew

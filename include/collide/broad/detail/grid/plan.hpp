@@ -133,6 +133,7 @@ struct cell_choice {
 template <class S, class Spheres>
 struct plan_grid {
   static constexpr int items = 1;
+  static constexpr bool is_cooperative = true;
 
   mesh_view<S> mesh;
   triangle_aabb<S> const* boxes;  ///< may be null
@@ -413,7 +414,8 @@ struct plan_grid {
   /// About how many spheres the grid serves.
   template <class Scratch>
   COLLIDE_HD_INLINE float spheres_served(Scratch const& s) const {
-    return request.spheres * static_cast<float>(max(s.distances.sampled, 1u)) / pair_distances::spheres;
+    float const spheres = request.spheres + request.costs.waiting;
+    return spheres * static_cast<float>(max(s.distances.sampled, 1u)) / pair_distances::spheres;
   }
 
   COLLIDE_HD void set_levels(grid<S>& g, grid_header<S> planned, cell_choice const& chosen, S extent,

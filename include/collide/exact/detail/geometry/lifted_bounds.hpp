@@ -90,8 +90,9 @@ struct lifted_batch {
     using flag = std::conditional_t<(Items > 4), uint_for<S>, bool>;  // of many: as wide as a lane of the vector unit
     flag some = 0;
     for (int k = 0; k < Items; ++k) {
-      some |= static_cast<flag>(x[k] * b.x + (y[k] * b.y + (z[k] * b.z + (radius[k] * b.radius + b.height))) >=
-                                threshold[k]);
+      S const height = mul_add(radius[k], b.radius, b.height);
+      S const sum = mul_add(x[k], b.x, mul_add(y[k], b.y, mul_add(z[k], b.z, height)));
+      some |= static_cast<flag>(sum >= threshold[k]);
     }
     return some != 0;
   }

@@ -28,6 +28,7 @@ struct bucket_tuning<detail::lookup_space<Space>> : bucket_tuning<Space> {
                                       bucket_tuning<Space>::costs.step_ns,
                                       bucket_tuning<Space>::costs.serial_ns,
                                       0,
+                                      0,
                                       0};
 };
 
