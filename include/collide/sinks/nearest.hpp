@@ -64,25 +64,70 @@ struct join_nearest {
   }
 };
 
+template <class S>
+struct find_nearest_foot;
+template <class S>
+struct measure_nearest_foot;
+
 /// Search functor of `nearest` for each sphere.
 template <class S, class Precision>
 struct find_nearest {
   using join = join_nearest<S, Precision>;      ///< joins what it finds in the parts of a mesh,
   using so_far = nearest_so_far<S, Precision>;  ///< to this
+  static constexpr bool is_exact = std::is_same<Precision, exact>::value;
+  using search_pass = std::conditional_t<is_exact, find_nearest_foot<S>, void>;      ///< first kernel on a device
+  using measure_pass = std::conditional_t<is_exact, measure_nearest_foot<S>, void>;  ///< second kernel
 
   S max_distance;
   nearest_triangle<S>* to;
 
   template <class Search>
   COLLIDE_HD void operator()(std::size_t i, sphere<S> const& s, mesh_view<S> const& mesh, Search const& search) const {
-    // of what has no radius nothing is in reach
-    nearest_search<S, Precision> best(s.centre, is_valid_radius(s.radius) ? max_distance + s.radius : S(-1));
+    set(i, s, searched(s, mesh, search).result());
+  }
+  template <class Search>
+  COLLIDE_HD_INLINE nearest_search<S, Precision> searched(sphere<S> const& s, mesh_view<S> const& mesh,
+                                                          Search const& search) const {
+    nearest_search<S, Precision> best(s.centre, reach_of(s));
     search(best.squared_bound(), [&](id t) {
       best.consider(mesh[t], t);
       return best.squared_bound();
     });
-    to[i] = best.result();
-    if (to[i].triangle != no_id && s.radius != 0) to[i].distance -= s.radius;
+    return best;
+  }
+  /// The distance up to which triangles count; negative for a sphere that has no radius.
+  COLLIDE_HD_INLINE S reach_of(sphere<S> const& s) const {
+    return is_valid_radius(s.radius) ? max_distance + s.radius : S(-1);
+  }
+  COLLIDE_HD_INLINE void set(std::size_t i, sphere<S> const& s, nearest_triangle<S> const& found) const {
+    to[i] = found;
+    if (found.triangle != no_id && s.radius != 0) to[i].distance -= s.radius;
+  }
+};
+
+/// Search functor: which triangle is nearest, and which foot.
+template <class S>
+struct find_nearest_foot {
+  find_nearest<S, exact> nearest;
+
+  template <class Search>
+  COLLIDE_HD void operator()(std::size_t i, sphere<S> const& s, mesh_view<S> const& mesh, Search const& search) const {
+    nearest.searched(s, mesh, search).keep(nearest.to[i]);
+  }
+};
+
+/// Kernel functor of `for_each` over spheres: what `find_nearest_foot` leaves to do.
+template <class S>
+struct measure_nearest_foot {
+  find_nearest<S, exact> nearest;
+  mesh_view<S> mesh;
+  sphere_view<S> spheres;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    sphere<S> const s = spheres[i];
+    vec3<double> direction;
+    nearest.set(i, s,
+                exact_nearest_search<S>::result_of(nearest.to[i], mesh, s.centre, nearest.reach_of(s), direction));
   }
 };
 

@@ -7,6 +7,7 @@
 
 #include <collide/core/nearest_triangle.hpp>
 #include <collide/core/precision.hpp>
+#include <collide/mesh.hpp>
 #include <collide/narrow/detail/contact_in_precision.hpp>
 #include <collide/narrow/detail/distance_bounds.hpp>
 #include <collide/narrow/detail/intersects.hpp>
@@ -66,6 +67,21 @@ class exact_nearest_search {
 
   COLLIDE_HD S squared_bound() const { return high_ < 0 ? S(-1) : rounded_up<S>(mul_rn(high_, high_)); }
 
+  /// Keeps the triangle and its foot in members of a result. `result_of` makes the result of them.
+  COLLIDE_HD void keep(nearest_triangle<S>& in) const {
+    in.triangle = number_;
+    in.feature_index = static_cast<std::uint32_t>(certain_ ? foot_ : unknown_foot);
+  }
+  COLLIDE_HD static nearest_triangle<S> result_of(nearest_triangle<S> const& kept, mesh_view<S> const& mesh,
+                                                  vec3<S> const& point, S max_distance, vec3<double>& direction) {
+    exact_nearest_search found(point, max_distance);
+    found.number_ = kept.triangle;
+    found.foot_ = static_cast<int>(kept.feature_index);
+    found.certain_ = found.foot_ != unknown_foot;
+    if (found.number_ != no_id) found.corners_ = mesh[found.number_];
+    return found.result(direction);
+  }
+
   /// The nearest triangle. `direction` is then set: from the closest point to the point, except for the length; on the
   /// triangle its normal, or 0.
   COLLIDE_HD nearest_triangle<S> result(vec3<double>& direction) const {
@@ -87,6 +103,8 @@ class exact_nearest_search {
   }
 
  private:
+  static constexpr int unknown_foot = 7;
+
   vec3<S> point_;
   S max_distance_;
   double low_ = 0,

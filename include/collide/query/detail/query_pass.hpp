@@ -106,11 +106,16 @@ struct mesh_search {
   }
 };
 
+/// A search functor that is two kernels where many threads are at work: its members `search_pass` and `measure_pass`.
+template <class F>
+using search_passes = std::enable_if_t<!std::is_void<typename F::search_pass>::value>;
+
 /// Kernel functor of `for_each` over spheres.
 template <class S, class Ref, class F>
 struct search_of_sphere {
+  /// Decisions in integers need more registers and are rare: more resident threads gain more.
   template <class>
-  static constexpr int min_blocks_per_sm = 3;
+  static constexpr int min_blocks_per_sm = 12;
 
   Ref ref;
   mesh_view<S> mesh;
@@ -144,7 +149,13 @@ void query_pass<Index, NarrowPhase, Space, S>::search(F const& f) const {
   if constexpr (is_valid<index_search_order, Index, Space, S>) {
     if (mesh.size() != 0) order = index.search_order(space, spheres);
   }
-  space.for_each(spheres.size(), search_of_sphere<S, ref_type, F>{ref, mesh, spheres, f, order});
+  if constexpr (query_tuning<Space>::defers_exact_tests && is_valid<search_passes, F>) {
+    using first = typename F::search_pass;
+    space.for_each(spheres.size(), search_of_sphere<S, ref_type, first>{ref, mesh, spheres, first{f}, order});
+    space.for_each(spheres.size(), typename F::measure_pass{f, mesh, spheres});
+  } else {
+    space.for_each(spheres.size(), search_of_sphere<S, ref_type, F>{ref, mesh, spheres, f, order});
+  }
 }
 
 template <class Index, class NarrowPhase, class Space, class S>

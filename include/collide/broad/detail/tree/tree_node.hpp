@@ -94,7 +94,7 @@ struct alignas(32) tree_boxes {
   /// The squared distance of box k, with a few roundings.
   COLLIDE_HD_INLINE float distance_squared(int k, tree_point const& p) const {
     float const x = gap(0, k, p), y = gap(1, k, p), z = gap(2, k, p);
-    return x * x + (y * y + z * z);
+    return mul_add(x, x, mul_add(y, y, z * z));
   }
 
   /// Boxes for arithmetic: on a device a copy in registers, loaded 16 bytes at a time, as each thread reads another
