@@ -68,6 +68,12 @@ COLLIDE_HD_INLINE void turn_at_random(double (&rotation)[4], std::uint64_t numbe
 
 namespace detail {
 
+/// True of the place of a clump's first sphere. Behind it are the others, in the order of their numbers, on its rank.
+template <class State>
+COLLIDE_HD_INLINE bool begins_clump(State const& state, std::size_t place) {
+  return state.at(in_clump{})[place] == number_of(state, place);
+}
+
 /// How many spheres have the clump that begins at a place; 1 if that is of a grain by itself.
 template <class State>
 COLLIDE_HD_INLINE std::size_t spheres_of_clump([[maybe_unused]] State const& state,
@@ -75,9 +81,19 @@ COLLIDE_HD_INLINE std::size_t spheres_of_clump([[maybe_unused]] State const& sta
   std::size_t n = 1;
   if constexpr (contains<typename State::list, in_clump>) {
     id const* const first = state.at(in_clump{});
-    while (place + n < state.size && first[place] == place && first[place + n] == place) ++n;
+    while (place + n < state.size && begins_clump(state, place) && first[place + n] == first[place]) ++n;
   }
   return n;
+}
+
+/// The place of the first sphere of a sphere's clump on its rank; its own, if it is a grain by itself.
+template <class State>
+COLLIDE_HD_INLINE std::size_t first_of_grain([[maybe_unused]] State const& state, std::size_t place) {
+  if constexpr (contains<typename State::list, in_clump>) {
+    id const first = state.at(in_clump{})[place];
+    if (first != no_id) return place - (number_of(state, place) - first);
+  }
+  return place;
 }
 
 /// The axes of a frame, that are its unit vectors in space, of a unit quaternion w, x, y, z.

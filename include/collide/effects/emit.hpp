@@ -86,7 +86,7 @@ struct emit_particles {
                                          [[maybe_unused]] std::uint64_t number) const {
     if constexpr (contains<typename State::list, in_clump>) {
       if (state.at(in_clump{})[place] == no_id) return false;
-      using kept = columns<radius, material, in_clump, clump_mass, clump_offset, clump_inertia>;
+      using kept = columns<radius, material, global_number, in_clump, clump_mass, clump_offset, clump_inertia>;
       using begun_anew = difference_of<typename State::list, kept>;
       particle<S, begun_anew> p;
       set_initial_values(p);
@@ -114,10 +114,11 @@ struct emit_at_places : emit_particles<S, State, Source> {
   COLLIDE_HD void operator()(std::size_t i) const {
     State const& here = this->state;
     std::uint64_t const begin = this->begun(), n = begin_in_step(here.time, this->due);
-    std::uint64_t const capacity = here.all_size - here.all_placed, place = here.at(global_number{})[i];
-    if (n == 0 || place < here.all_placed) return;
-    std::uint64_t const first =
-        (place - here.all_placed + capacity - begin % capacity) % capacity;  // of the step for this place
+    std::uint64_t const number = here.at(global_number{})[i];
+    if (n == 0 || number < here.all_placed || first_of_grain(here, i) != i) return;
+    std::uint64_t const spheres = spheres_of_clump(here, i), capacity = (here.all_size - here.all_placed) / spheres,
+                        place = (number - here.all_placed) / spheres;
+    std::uint64_t const first = (place + capacity - begin % capacity) % capacity;  // of the step for this place
     if (first >= n) return;
     std::uint64_t const others = (n - 1 - first) / capacity;
     this->store_at(i, begin + first + (this->only_free ? 0 : others * capacity), others);

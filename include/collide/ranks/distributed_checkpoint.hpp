@@ -81,16 +81,24 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
     auto const n = static_cast<std::uint64_t>(ranks.size());
     std::optional<format> found;
     std::vector<std::uint64_t> starts;
+    auto const begin_of = [&](std::uint64_t number) {  // a clump stays whole
+      if constexpr (contains<typename simulated::columns, in_clump>) {
+        auto const& clump = found->template column<in_clump>();
+        auto const goes_on = [&] { return number > 0 && number < clump.size() && clump[number] != no_id; };
+        while (goes_on() && clump[number] == clump[number - 1]) --number;
+      }
+      return number;
+    };
     together(ranks, [&] {
       found.emplace(read([&](std::istream& from) { return format(to.part_.triangles(), to.local(), from); }));
-      for (std::uint64_t r = 0; r <= n; ++r) starts.push_back(found->numbers().placed * r / n);
+      for (std::uint64_t r = 0; r <= n; ++r) starts.push_back(begin_of(found->numbers().placed * r / n));
     });
     to.is_sound_ = false;
     to.starts_ = std::move(starts);
     std::uint64_t const first = to.starts_[static_cast<std::size_t>(ranks.rank())],
                         end = to.starts_[static_cast<std::size_t>(ranks.rank()) + 1];
     global_counts all{first, found->numbers().placed, found->numbers().places, 0, 0};
-    to.share_free(all);
+    to.share_free(all, begin_of);
     to.reverse_order_ = found->numbers().reverse_order != 0;
     to.exchange_.clear();
     together(ranks, [&] { to.part_.restore(*found, static_cast<std::size_t>(end - first), all, ranks.rank() == 0); });

@@ -83,8 +83,6 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   using part_type = detail::part_of_simulation<simulation_type>;
   using broad_phase = typename Detector::broad_phase;
   static constexpr bool any_pair_contact = part_type::any_pair_contact;
-  static_assert(!detail::contains<columns, in_clump>,
-                "collide: clumps are on one rank: a simulation of several does not have them yet");
   static_assert((detail::check_on_ranks<Effect, execution_space, typename simulation_type::state_type, S>() && ...));
 
  public:
@@ -101,11 +99,17 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   /// the numbers of all. `capacity` is for how many particles there is room on all ranks together: the same number on
   /// each. There are at most 2^32 - 2 on all ranks.
   void set(sphere_view<S> const& mine, S const* velocities = nullptr, std::size_t capacity = 0) {
+    set(mine, velocities, capacity, [](simulation_type&) {});
+  }
+  /// The same, and calls `then` with the simulation of this rank, for code that sets more of particles, as
+  /// `set_clumps` does; no part of the interface.
+  template <class F>
+  void set(sphere_view<S> const& mine, S const* velocities, std::size_t capacity, F const& then) {
     detail::global_counts all{count_before(ranks_, mine.size()), 0, 0, 0, 0};
     std::uint64_t const n = mine.size();
     ranks_.reduce(&n, &all.placed, 1, reduction::sum);
     all.size = std::max(all.placed, std::uint64_t{capacity});
-    share_free(all);
+    share_free(all, [](std::uint64_t number) { return number; });
     S const own = part_.effects().source_radius();
     detail::radii_of_all<S> radii = find_radii(mine);
     radii.range = radii.range.with(own);
@@ -116,6 +120,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     together(ranks_, [&] {
       starts_.resize(static_cast<std::size_t>(ranks_.size()) + 1);
       part_.set(mine, velocities, all, radii);
+      then(part_.simulation());
     });
     ranks_.all_gather(&all.first, sizeof all.first, starts_.data());
     starts_.back() = all.placed;
@@ -320,12 +325,13 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     return failed;
   }
 
-  /// Says with which free places this rank begins.
-  void share_free(detail::global_counts& all) const {
+  /// Says with which free places this rank begins; begin_of(number) is where something whole begins that has it.
+  template <class F>
+  void share_free(detail::global_counts& all, F const& begin_of) const {
     auto const ranks = static_cast<std::uint64_t>(ranks_.size()), rank = static_cast<std::uint64_t>(ranks_.rank());
     std::uint64_t const capacity = all.size - all.placed;
-    all.first_free = all.placed + capacity * rank / ranks;
-    all.free_size = all.placed + capacity * (rank + 1) / ranks - all.first_free;
+    all.first_free = begin_of(all.placed + capacity * rank / ranks);
+    all.free_size = begin_of(all.placed + capacity * (rank + 1) / ranks) - all.first_free;
   }
 
   /// Radii of the particles of all ranks. Throws `error` on all if there must be one, but there are several.

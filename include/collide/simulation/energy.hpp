@@ -75,7 +75,7 @@ struct particles_on_host {
 
   std::vector<S> x, v, w, r;
   std::vector<std::uint8_t> is_there, solid;
-  std::vector<id> clump;                           ///< `in_clump`, in scenes with clumps
+  std::vector<id> clump;                           ///< `in_clump`, by places
   std::vector<S> clump_masses;                     ///< `clump_mass`
   std::vector<std::pair<id, std::size_t>> places;  ///< by numbers among the particles of all ranks
   typename simulation<Detector, Effect...>::effects_type::space_type space;
@@ -101,6 +101,8 @@ struct particles_on_host {
       for (id const number : of.template to_host<global_number>()) places.emplace_back(number, places.size());
       std::sort(places.begin(), places.end());
     }
+    for (id& first : clump)
+      if (first != no_id) first = static_cast<id>(place_of(first));
   }
 
   /// The place of the particle of a number by which neighbours meet; behind all if it is on another rank.

@@ -14,6 +14,9 @@
 
 namespace collide {
 
+template <class Detector, class... Effect>
+class simulation;
+
 /// A clump in space.
 struct placed_clump {
   std::size_t shape = 0;  ///< its number in the list of shapes
@@ -45,6 +48,20 @@ inline std::vector<placed_clump> clumps_within(std::vector<double> const& centre
 
 namespace detail {
 
+/// Numbers in memory of a space.
+template <class T, class Space>
+buffer<T> copied_to(Space const& space, std::vector<T> const& from) {
+  buffer<T> to;
+  space.copy_from_host(to.reserve(space.resource(), from.size() + 1), from.data(), from.size());
+  return to;
+}
+template <class Column, class Simulation, class T>
+void assign_from_host(Simulation& to, std::vector<T> const& values) {
+  auto const there = copied_to(to.space(), values);
+  to.template assign<Column>(there.data());
+  to.space().synchronize();
+}
+
 /// The columns of clumps, on the host.
 template <class S>
 struct columns_of_clumps {
@@ -52,7 +69,70 @@ struct columns_of_clumps {
       rotations, inertias;
   std::vector<id> first;
   double reach = 0;
+  std::size_t there = 0;  ///< spheres of those that do not wait
 
+  std::size_t size() const { return radii.size(); }
+
+  /// As `set_clumps`.
+  void add(std::vector<clump_shape> const& shapes, std::vector<placed_clump> const& placed, std::size_t waiting) {
+    for (auto const& shape : shapes) shape.check();
+    std::size_t numbers = 0;  // spheres of each that waits
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      check_parameter(placed[i].shape < shapes.size(), "set_clumps: the number of a shape is that of one of the list");
+      clump_shape const& shape = shapes[placed[i].shape];
+      add(shape, placed[i]);
+      if (i + waiting < placed.size()) {
+        there = size();
+      } else {
+        check_parameter(numbers == 0 || numbers == shape.spheres.size(),
+                        "set_clumps: all clumps that wait have as many spheres");
+        numbers = shape.spheres.size();
+      }
+    }
+  }
+
+  /// The number of the first sphere, where others are before.
+  void number_from(std::uint64_t number) {
+    for (id& of : first)
+      if (of != no_id) of += static_cast<id>(number);
+  }
+
+  /// Spheres in memory of a space.
+  struct spheres_in_space {
+    buffer<S> centres, velocities, radii;
+    sphere_view<S> view;
+  };
+  template <class Space>
+  spheres_in_space spheres_in(Space const& space) const {
+    spheres_in_space found{copied_to(space, centres), copied_to(space, velocities), copied_to(space, radii), {}};
+    bool const alike = size() == 0 || std::equal(radii.begin() + 1, radii.end(), radii.begin());
+    S const* const x = found.centres.data();
+    found.view =
+        alike ? spheres_xyz(x, size(), size() == 0 ? S(1) : radii[0]) : spheres_xyz(x, size(), found.radii.data());
+    return found;
+  }
+
+  /// Gives a simulation, whose places are these spheres, all else.
+  template <class Simulation>
+  void assign_to(Simulation& to) const {
+    check_parameter(there == size() || Simulation::effects_type::makes,
+                    "set_clumps: clumps wait for emit, which is not in the scene");
+    to.space().copy_from_host(to.template data<angular_velocity>(), turnings.data(), turnings.size());
+    to.space().synchronize();
+    to.template effect<clumps>().reach = reach;
+    assign_from_host<clump_mass>(to, masses);
+    assign_from_host<clump_offset>(to, offsets);
+    assign_from_host<clump_centre>(to, clump_centres);
+    assign_from_host<clump_velocity>(to, clump_velocities);
+    assign_from_host<clump_momentum>(to, momenta);
+    assign_from_host<clump_rotation>(to, rotations);
+    assign_from_host<clump_inertia>(to, inertias);
+    assign_from_host<in_clump>(to, first);
+    if constexpr (Simulation::effects_type::makes)
+      to.space().fill(to.template data<alive>() + there, 0, size() - there);
+  }
+
+ private:
   void add(clump_shape const& shape, placed_clump const& c) {
     pose const& frame = shape.frame;
     double q[4], turn[4] = {c.at.rotation[0], c.at.rotation[1], c.at.rotation[2], c.at.rotation[3]}, squared = 0;
@@ -89,7 +169,6 @@ struct columns_of_clumps {
     reach = std::max(reach, c.scale * shape.reach());
   }
 
- private:
   static vec3<double> in(double const (&x)[3]) { return {x[0], x[1], x[2]}; }
   static void put(std::vector<S>& to, vec3<double> const& x) {
     for (int k = 0; k < 3; ++k) to.push_back(static_cast<S>(x[k]));
@@ -101,20 +180,6 @@ struct columns_of_clumps {
   }
 };
 
-/// Numbers in memory of a space.
-template <class T, class Space>
-buffer<T> copied_to(Space const& space, std::vector<T> const& from) {
-  buffer<T> to;
-  space.copy_from_host(to.reserve(space.resource(), from.size() + 1), from.data(), from.size());
-  return to;
-}
-template <class Column, class Simulation, class T>
-void assign_from_host(Simulation& to, std::vector<T> const& values) {
-  auto const there = copied_to(to.space(), values);
-  to.template assign<Column>(there.data());
-  to.space().synchronize();
-}
-
 }  // namespace detail
 
 /// Puts clumps into a simulation that names `clumps`, in place of all particles: `set` with their spheres, those of one
@@ -122,49 +187,15 @@ void assign_from_host(Simulation& to, std::vector<T> const& values) {
 /// Radii that differ need `polydisperse`. The last `waiting` ones are not there yet: each is for one that `emit` makes,
 /// turned at random, with its shape and scale; all have as many spheres. Throws `error` if a shape is none, or a
 /// rotation is not of length 1, and what `set` throws. Allocates; waits. O(spheres).
-template <class Simulation>
-void set_clumps(Simulation& to, std::vector<clump_shape> const& shapes, std::vector<placed_clump> const& placed,
-                std::size_t waiting = 0) {
-  using S = typename Simulation::scalar;
-  for (auto const& shape : shapes) shape.check();
-  detail::columns_of_clumps<S> all;
-  std::size_t there = 0, numbers = 0;  // spheres of those that do not wait, and of each one that does
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    detail::check_parameter(placed[i].shape < shapes.size(),
-                            "set_clumps: the number of a shape is that of one of the list");
-    clump_shape const& shape = shapes[placed[i].shape];
-    all.add(shape, placed[i]);
-    if (i + waiting < placed.size()) {
-      there = all.radii.size();
-    } else {
-      detail::check_parameter(numbers == 0 || numbers == shape.spheres.size(),
-                              "set_clumps: all clumps that wait have as many spheres");
-      numbers = shape.spheres.size();
-    }
-  }
-  auto const& radii = all.radii;
-  std::size_t const n = radii.size();
-  bool const alike = n == 0 || std::equal(radii.begin() + 1, radii.end(), radii.begin());
-  auto const centres = detail::copied_to(to.space(), all.centres),
-             velocities = detail::copied_to(to.space(), all.velocities), own = detail::copied_to(to.space(), radii);
-  to.set(alike ? spheres_xyz(centres.data(), n, n == 0 ? S(1) : radii[0]) : spheres_xyz(centres.data(), n, own.data()),
-         velocities.data());
-  to.space().copy_from_host(to.template data<angular_velocity>(), all.turnings.data(), all.turnings.size());
-  to.space().synchronize();
-  to.template effect<clumps>().reach = all.reach;
-  detail::assign_from_host<clump_mass>(to, all.masses);
-  detail::assign_from_host<clump_offset>(to, all.offsets);
-  detail::assign_from_host<clump_centre>(to, all.clump_centres);
-  detail::assign_from_host<clump_velocity>(to, all.clump_velocities);
-  detail::assign_from_host<clump_momentum>(to, all.momenta);
-  detail::assign_from_host<clump_rotation>(to, all.rotations);
-  detail::assign_from_host<clump_inertia>(to, all.inertias);
-  detail::assign_from_host<in_clump>(to, all.first);
-  if (there == n) return;
-  detail::check_parameter(Simulation::effects_type::makes,
-                          "set_clumps: clumps wait for emit, which is not in the scene");
-  if constexpr (Simulation::effects_type::makes) to.space().fill(to.template data<alive>() + there, 0, n - there);
-  to.internals().particles.placed = there;
+template <class Detector, class... Effect>
+void set_clumps(simulation<Detector, Effect...>& to, std::vector<clump_shape> const& shapes,
+                std::vector<placed_clump> const& placed, std::size_t waiting = 0) {
+  detail::columns_of_clumps<typename Detector::scalar> all;
+  all.add(shapes, placed, waiting);
+  auto const spheres = all.spheres_in(to.space());
+  to.set(spheres.view, spheres.velocities.data());
+  all.assign_to(to);
+  to.internals().particles.placed = all.there;
 }
 
 }  // namespace collide

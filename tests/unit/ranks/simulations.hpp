@@ -209,11 +209,11 @@ auto sizes_that_repeat() {
 
 /// A cube of grains, and far from it a row: ranks between which nothing meets, and ranks of which all meets others.
 template <class Space = collide::host>
-auto clumps() {
+auto cube_and_row() {
   using namespace collide;
   auto w = packed_cube<float>(40, 0.2, 0.1);
   for (int i = 0; i < 12; ++i) w.particle(9 + 0.39 * i, 0, 0, i % 2 == 0 ? 0.1 : -0.1);
-  return scene_of<simulation<discrete<Space>, sphere_contact, greets>>("clumps", w, 100, 1e-3,
+  return scene_of<simulation<discrete<Space>, sphere_contact, greets>>("cube and row", w, 100, 1e-3,
                                                                        sphere_contact{5, 0.01, 0.2, 0.01, 1}, greets{});
 }
 

@@ -44,7 +44,7 @@ TEST_CASE("simulations on ranks: sources where nobody is, and with fewer places 
 TEST_CASE("simulations on ranks: messages that come late") {
   tests::check_on_threads<tests::late_ranks>(tests::sizes_that_repeat());
   tests::check_on_threads<tests::late_ranks>(tests::snow(true), {1, 3});
-  tests::check_on_threads<tests::late_ranks>(tests::clumps(), {1, 2, 3, 4, 7, 12});
+  tests::check_on_threads<tests::late_ranks>(tests::cube_and_row(), {1, 2, 3, 4, 7, 12});
 }
 
 TEST_CASE("simulations on ranks: bodies that move") {

@@ -319,6 +319,16 @@ struct particle_state<S, columns<C...>>
   }
 };
 
+/// The number that effects know the particle at a place by.
+template <class S, class List>
+COLLIDE_HD_INLINE id number_of(particle_state<S, List> const& state, std::size_t i) {
+  if constexpr (contains<List, global_number>) {
+    return state.at(global_number{})[i];
+  } else {
+    return state.name_at(i);
+  }
+}
+
 /// The memory of a column.
 template <class C, class S>
 struct buffer_of {

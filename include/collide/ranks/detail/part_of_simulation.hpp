@@ -49,7 +49,7 @@ class part_of_simulation {
   using around_type = typename effects_type::space_type;
   /// Columns of copies: all that is read of a particle that another one meets.
   using seen_columns =
-      union_of<typename effects_type::interaction, intersection_of<columns<radius, alive>, all_columns>>;
+      union_of<typename effects_type::interaction, intersection_of<columns<radius, alive, in_clump>, all_columns>>;
   template <class List>
   using rows = std::vector<particle_row<S, List>>;
 
@@ -134,7 +134,12 @@ class part_of_simulation {
   std::size_t all_size() const { return data().particles.all_size; }
 
   /// How far from its own subdomain, as it was at the last exchange, a rank must know particles.
-  double reach() const { return reach_; }
+  double reach() const {
+    auto const widest = static_cast<double>(widest_);
+    double farthest = widest;
+    if constexpr (effects_type::has_clumps) farthest = max(widest, effects().template of<clumps>().reach);
+    return widest > 0 ? (widest + farthest + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
+  }
 
   void check_step(S dt) { phases().check_step(dt); }
 
@@ -269,7 +274,7 @@ class part_of_simulation {
   }
   /// Finds the particles of which other ranks than `self` must have copies. Waits.
   void find_copied(subdomain_lookup const& subdomains, int self, int ranks, send_plan& found) {
-    detail::find_copied<S, state_type, around_type> const copied{state(), effects().space(), subdomains, reach_, self,
+    detail::find_copied<S, state_type, around_type> const copied{state(), effects().space(), subdomains, reach(), self,
                                                                  {}};
     found.find(space(), copied, own(), own(), ranks);
   }
@@ -291,17 +296,22 @@ class part_of_simulation {
     detail::pack_particles(space(), state(), routed_places{leaving.data()}, leaving.size(), to.resize(space()));
   }
 
-  /// Takes particles away that have left, and adds others.
+  /// Takes particles away that have left, and adds others. Spheres of a clump follow each other, here and in a message.
   void replace(send_plan const& left, device_exchange_buffer<particle_row<S, all_columns>> const& coming) {
     knows_others_ = false;
     std::vector<std::uint32_t> const leaving = rising_places(left);
     std::size_t const before = own(), after = before - leaving.size() + coming.size();
     ensure_capacity(after);
-    std::vector<std::uint32_t> to(leaving.begin(),
-                                  leaving.begin() + static_cast<std::ptrdiff_t>(min(leaving.size(), coming.size())));
-    for (std::size_t i = before; to.size() < coming.size(); ++i) to.push_back(static_cast<std::uint32_t>(i));
+    std::vector<std::uint32_t> to;
+    if constexpr (effects_type::has_clumps) {
+      close_up(leaving);
+    } else {
+      to.assign(leaving.begin(), leaving.begin() + static_cast<std::ptrdiff_t>(min(leaving.size(), coming.size())));
+    }
+    for (std::size_t i = after - (coming.size() - to.size()); to.size() < coming.size(); ++i)
+      to.push_back(static_cast<std::uint32_t>(i));
     unpack(to, coming.data());
-    if (coming.size() < leaving.size()) close_gaps(leaving, coming.size(), after);
+    if (!effects_type::has_clumps && coming.size() < leaving.size()) close_gaps(leaving, coming.size(), after);
     resize_own(after);
     space().synchronize();  // the rows go
   }
@@ -376,10 +386,9 @@ class part_of_simulation {
     describe(capacity, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), radii.common);
     space().for_each(capacity, number_places<S, state_type>{data().particles, n, all.first, all.first_free,
                                                             data().effects.source_radius()});
-    S const widest = radii.widest;
+    widest_ = radii.widest;
     data().radii = radii.range;
-    skin_ = skin_fraction * 2 * widest;
-    reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
+    skin_ = skin_fraction * 2 * widest_;
     copies_ = 0;
     knows_others_ = false;
     if constexpr (remembers_pairs) data().neighbours.clear(space(), capacity, radii.range);
@@ -398,6 +407,26 @@ class part_of_simulation {
         to.push_back(leaving[gap++]);
       }
     }
+    move(from, to);
+  }
+
+  /// Moves particles to where others have left, in their order.
+  void close_up(std::vector<std::uint32_t> const& leaving) {
+    std::vector<std::uint32_t> from, to;
+    std::size_t left = 0;
+    for (std::size_t i = leaving.empty() ? own() : leaving.front(); i < own(); ++i) {
+      if (left < leaving.size() && leaving[left] == i) {
+        ++left;
+      } else {
+        from.push_back(static_cast<std::uint32_t>(i));
+        to.push_back(static_cast<std::uint32_t>(i - left));
+      }
+    }
+    move(from, to);
+  }
+
+  /// Moves particles from places to others.
+  void move(std::vector<std::uint32_t> const& from, std::vector<std::uint32_t> const& to) {
     buffer<particle_row<S, all_columns>> moved;
     auto* const between = moved.reserve(space().resource(), from.size());
     listed_places const listed{in_space(space(), from, place_memory_)};
@@ -454,8 +483,7 @@ class part_of_simulation {
   around_type around_{};       ///< the space when ranks last exchanged some
   bool knows_others_ = false;  ///< there are copies of all that its own may meet, as long as nothing moves far
   bool lists_tell_ = false;    ///< lists of neighbours have as thick a skin, so they know when something has
-  S skin_ = 0;
-  double reach_ = 0;
+  S skin_ = 0, widest_ = 0;
   buffer<S> last_centres_;
   buffer<std::uint8_t> last_there_;
   buffer<std::uint32_t> flag_, place_memory_;

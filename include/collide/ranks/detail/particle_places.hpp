@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <collide/effects/clumps.hpp>
 #include <collide/effects/detail/effect_list.hpp>
 #include <collide/exact/detail/numeric/float_bits.hpp>
 #include <collide/exact/detail/numeric/rounding.hpp>
@@ -155,8 +156,17 @@ struct count_somewhere {
   }
 };
 
-/// Kernel functor of `for_each` over particles: lists those that are to be on other ranks. Free places are on all ranks
-/// alike; what is nowhere stays.
+/// Where the grain is that begins at a place: a particle, or a clump.
+template <class State>
+COLLIDE_HD_INLINE auto const* centre_of_grain(State const& state, std::size_t place) {
+  if constexpr (contains<typename State::list, in_clump>) {
+    if (state.at(in_clump{})[place] != no_id) return state.at(clump_centre{}) + 3 * place;
+  }
+  return state.at(position{}) + 3 * place;
+}
+
+/// Kernel functor of `for_each` over particles: lists those that are to be on other ranks, where all of a clump go with
+/// its centre. Free places are on all ranks alike; what is nowhere stays.
 template <class S, class State, class Space>
 struct find_leaving {
   State state;
@@ -167,10 +177,12 @@ struct find_leaving {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     int rank = self;
-    if (is_somewhere(state, i)) {
-      rank = subdomains.rank_at(inside(space, state.at(position{}) + 3 * i).data());
-    } else if (!is_there(state, i)) {
-      std::uint64_t const number = state.at(global_number{})[i];
+    std::size_t const first = first_of_grain(state, i);
+    S const* const x = centre_of_grain(state, first);
+    if (is_there(state, first)) {
+      if (is_finite(vec3<S>(x[0], x[1], x[2]))) rank = subdomains.rank_at(inside(space, x).data());
+    } else {
+      std::uint64_t const number = state.at(global_number{})[first];
       rank = static_cast<int>(number * static_cast<std::uint64_t>(ranks) / state.all_size);
     }
     if (rank != self) add_send(to, rank, i);

@@ -10,7 +10,7 @@
 
 namespace collide::detail {
 
-/// A clump. Its spheres are those with numbers from `first` on that say so.
+/// A clump. Its spheres are those at places from `first` on that say so.
 template <class S, class Effects>
 struct moving_clump {
   using state_type = particle_state<S, typename Effects::all>;
@@ -153,8 +153,9 @@ struct moving_clump {
 
   template <class F>
   COLLIDE_HD_INLINE void for_each_sphere(F const& f) const {
+    id const* const clump = state.at(in_clump{});
     COLLIDE_NO_UNROLL
-    for (std::size_t i = first; i < state.size && state.at(in_clump{})[i] == first; ++i) f(i);
+    for (std::size_t i = first; i < state.size && clump[i] == clump[first]; ++i) f(i);
   }
 
  private:
@@ -196,7 +197,7 @@ struct step_clumps {
   S dt;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (state.at(in_clump{})[i] != i) return;
+    if (!begins_clump(state, i)) return;
     moving_clump<S, Effects> clump(state, i);
     clump.gather();
     S const time = S(Ends ? Effects::integrator::kick_after : Effects::integrator::kick_before) * dt;
@@ -224,7 +225,7 @@ struct place_clumps {
   typename Effects::space_type space;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (state.at(in_clump{})[i] != i) return;
+    if (!begins_clump(state, i)) return;
     moving_clump<S, Effects> const clump(state, i);
     clump.store(space, true);
     if constexpr (contains<typename Effects::all, material>)
