@@ -25,6 +25,7 @@
 #include <collide/karabassi_swept.hpp>
 #include <collide/ranks/distributed.hpp>
 #include <collide/ranks/distributed_checkpoint.hpp>
+#include <collide/ranks/distributed_clumps.hpp>
 #include <collide/ranks/thread_ranks.hpp>
 #include <collide/simulation.cuh>
 #include <collide/simulation/checkpoint.hpp>

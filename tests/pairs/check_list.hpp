@@ -8,10 +8,10 @@
 #include <limits>
 #include <sstream>
 
+#include <collide/ranks/distributed_clumps.hpp>
 #include <collide/ranks/thread_ranks.hpp>
 #include <collide/simulation/checkpoint.hpp>
 #include <collide/simulation/energy.hpp>
-#include <collide/simulation/place_clumps.hpp>
 
 #include "execution/lockstep.hpp"
 #include "scene.hpp"
@@ -33,6 +33,13 @@ class moving_scene {
   }
 
   std::size_t size() const { return w_.size(); }
+  /// An even part of the grains, or of pairs of them.
+  range part_of_rank(bool of_pairs, int rank, int ranks) const {
+    if (!of_pairs) return part_of(size(), split::evenly, rank, ranks);
+    range const pairs = part_of((size() + 1) / 2, split::evenly, rank, ranks);
+    std::size_t const first = std::min(2 * pairs.first, size());
+    return {first, std::min(first + 2 * pairs.size, size()) - first};
+  }
   void stand_still() { size_of_motion_ = 0; }
 
   /// Sets the mesh, and a part of the particles.
@@ -180,14 +187,12 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
 
   /// The same on ranks.
   void check_ranks() const {
-    if constexpr (!has<collide::clumps>) {  // which do not compile there
-      for (int const n : {1, 3}) {
-        std::vector<complaints> wrong(static_cast<std::size_t>(n));
-        collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
-          check_rank(ranks, wrong[static_cast<std::size_t>(ranks.rank())]);
-        });
-        for (auto const& w : wrong) CHECK(w.text() == "");
-      }
+    for (int const n : {1, 3}) {
+      std::vector<complaints> wrong(static_cast<std::size_t>(n));
+      collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
+        check_rank(ranks, wrong[static_cast<std::size_t>(ranks.rank())]);
+      });
+      for (auto const& w : wrong) CHECK(w.text() == "");
     }
   }
 
@@ -403,7 +408,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
     collide::distributed<simulation<host>, collide::thread_ranks> parts(ranks, space,
                                                                         parameters<Effect>(trial_, sums, has_sizes)...);
     scene_in<host> scene(space, trial_, falling_grains<S>(trial_, has_sizes));
-    range own = part_of(scene.size(), split::evenly, ranks.rank(), ranks.size());
+    range own = scene.part_of_rank(has<collide::clumps>, ranks.rank(), ranks.size());
     scene.begin(parts, own, capacity(scene.size()));
     if (has_source && ranks.rank() + 1 == ranks.size()) own.size += newborns;
     values found;

@@ -101,7 +101,6 @@ REFUSED = {
     "granular_contact_that_sweeps": "granular_contact with karabassi_swept",
     "clumps_with_bounce": "clumps beside bounce, friction, spin or adhesion",
     "clumps_with_box_walls": "clumps beside box_walls",
-    "clumps_on_ranks": "clumps on several ranks",
     "clumps_without_velocity_verlet": "clumps without velocity_verlet and contact by forces",
     "two_integrators": "two integrators",
     "two_sources": "two sources",

@@ -311,7 +311,7 @@ void add_clumps(energy_sums& to, simulation<Detector, Effect...> const& of,
   auto const x = of.template to_host<clump_centre>(), v = of.template to_host<clump_velocity>(),
              l = of.template to_host<clump_momentum>(), inertia = of.template to_host<clump_inertia>();
   for (std::size_t i = 0; i < all.clump.size(); ++i) {
-    if (all.clump[i] != i) continue;
+    if (all.clump[i] != i || all.is_there[i] == 0) continue;
     double const m = sphere_mass(density(i), static_cast<double>(inertia[4 * i + 3]));
     to.kinetic += 0.5 * m * all.at(v, i).squaredNorm();
     to.rotational += 0.5 * m * all.at(l, i).dot(all.at(all.w, i));

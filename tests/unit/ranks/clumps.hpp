@@ -247,15 +247,38 @@ auto clumps_in_a_cube() {
   using namespace collide;
   world<S> w;
   add_cube(w, 1.5);
-  auto all = clumps_on_lattice(4, 4, 2);
-  for (auto& c : all) c.at.position[0] *= 1.4;  // ranks meet in planes across x
+  auto all = clumps_on_lattice(5, 4, 2);  // some of them in the middle, where ranks meet
+  for (auto& c : all)
+    for (int k = 0; k < 3; ++k) c.at.position[k] *= k == 0 ? 1.4 : 1.3;
   return clump_scene<discrete<Space, S>, velocity_verlet, gravity, law_of_clumps, polydisperse, clumps>{
       "clumps in a cube",
       w,
       {velocity_verlet{}, gravity{}, three_materials(), {}, {}},
       some_shapes(),
       all,
-      1000,
+      600,
+      S(2e-4)};
+}
+
+/// A rod of one of two ranks, and a grain of the other that its far end hits, farther from the first than spheres see.
+template <class S, class Space = collide::host>
+auto rod_across_ranks() {
+  using namespace collide;
+  using law = granular_contact<hertz, mindlin>;
+  std::vector<placed_clump> all(6);
+  for (std::size_t c = 0; c < 6; ++c) {
+    double const x[] = {-0.31, -3, -3, 0.335, 3, 3};
+    all[c].shape = c == 0 ? 0 : 1;
+    all[c].at.position[0] = x[c], all[c].at.position[1] = c % 3 == 2 ? 1 : 0.02;
+  }
+  all[3].moving.linear[0] = -1;
+  return clump_scene<discrete<Space, S>, velocity_verlet, law, clumps>{
+      "a rod across ranks",
+      {},
+      {velocity_verlet{}, law{one_material({2e5, 0.25, 1000}, {0.6, 0.4})}, {}},
+      {some_shapes()[3], shape_of_clump({sphere<double>{{0, 0, 0}, 0.06}})},
+      all,
+      200,
       S(2e-4)};
 }
 

@@ -424,6 +424,7 @@ void check_sink_of_clumps(Space const& space) {
   }
   CHECK(sums.read(space).particles == 6);
   CHECK(sums.read(space).mass == doctest::Approx(6 * 1000 * potato().volume).epsilon(1e-9));
+  CHECK(collide::energy(some.made).total() == 0);
 }
 
 // ---- sleep

@@ -49,7 +49,7 @@ class part_of_simulation {
   using around_type = typename effects_type::space_type;
   /// Columns of copies: all that is read of a particle that another one meets.
   using seen_columns =
-      union_of<typename effects_type::interaction, intersection_of<columns<radius, alive, in_clump>, all_columns>>;
+      union_of<typename effects_type::interaction, intersection_of<columns<radius, alive>, all_columns>>;
   template <class List>
   using rows = std::vector<particle_row<S, List>>;
 

@@ -217,9 +217,12 @@ struct sorted_particles {
 
   COLLIDE_HD_INLINE void ask_to_rebuild() const { store_relaxed(&header->rebuild, 1u); }
 
-  /// True of two spheres of one clump, which do not meet.
+  /// True of two spheres of one clump, which do not meet. All of it are on one rank.
   COLLIDE_HD_INLINE bool are_rigid([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t k) const {
-    if constexpr (has_clumps) return clumps[numbers[i]] != no_id && clumps[numbers[i]] == clumps[numbers[k]];
+    if constexpr (has_clumps) {
+      if (is_of_another(numbers[k])) return false;
+      return clumps[numbers[i]] != no_id && clumps[numbers[i]] == clumps[numbers[k]];
+    }
     return false;
   }
 
