@@ -43,6 +43,10 @@ struct clump_inertia {
 /// turns freely by a symplectic splitting into rotations around its principal axes (A. Dullweber, B. Leimkuhler and
 /// R. McLachlan, Journal of Chemical Physics 107, 1997), of second order: its energy goes up and down and does not
 /// drift, and its angular momentum is the same to the bit. The step must be short beside a turn. 21 scalars a sphere.
+///
+/// Not with `box_walls`: a wall gives a sphere an impulse through its centre, of a size that the restitution says. On a
+/// clump it acts beside the centre of mass, and where several spheres of one are at walls at once, as of a rod that
+/// lies, restitution does not say how large each impulse is. A mesh acts by forces.
 struct clumps {
   using writes = columns<position, velocity, angular_velocity, in_clump, clump_mass, clump_offset, clump_centre,
                          clump_velocity, clump_momentum, clump_rotation, clump_inertia>;

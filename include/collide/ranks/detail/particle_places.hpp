@@ -156,7 +156,7 @@ struct count_somewhere {
   }
 };
 
-/// Where the grain is that begins at a place: a particle, or a clump.
+/// The centre of the grain that begins at a place: of a particle, or of a clump.
 template <class State>
 COLLIDE_HD_INLINE auto const* centre_of_grain(State const& state, std::size_t place) {
   if constexpr (contains<typename State::list, in_clump>) {
