@@ -101,8 +101,8 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   void set(sphere_view<S> const& mine, S const* velocities = nullptr, std::size_t capacity = 0) {
     set(mine, velocities, capacity, [](simulation_type&) {});
   }
-  /// `set`, and a call of `then` with the simulation of this rank, for code that sets more of particles, as `set_clumps`
-  /// does; no part of the interface.
+  /// `set`, and a call of `then` with the simulation of this rank, for code that sets more of particles, as
+  /// `set_clumps` does; no part of the interface.
   template <class F>
   void set(sphere_view<S> const& mine, S const* velocities, std::size_t capacity, F const& then) {
     detail::global_counts all{count_before(ranks_, mine.size()), 0, 0, 0, 0};
