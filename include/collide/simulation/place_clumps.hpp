@@ -11,6 +11,7 @@
 #include <collide/core/memory.hpp>
 #include <collide/effects/clumps.hpp>
 #include <collide/simulation/clump_shape.hpp>
+#include <collide/spheres.hpp>
 
 namespace collide {
 
