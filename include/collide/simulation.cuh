@@ -230,7 +230,7 @@ class simulation {
     if constexpr (effects_type::overlaps)
       lists += all_.surfaces.bytes() + all_.pressing.bytes() + all_.overlaps.bytes();
     return all_.memory.bytes() + all_.device_time.bytes() + all_.was_there.bytes() + all_.overflow.bytes() +
-           all_.bodies.bytes() + all_.order.names.bytes() + all_.order.moved.bytes() + lists;
+           all_.bodies.bytes() + all_.order.names.bytes() + lists;
   }
 
   /// Number of particles, or of places for them, if an effect makes or removes some; see `alive`.

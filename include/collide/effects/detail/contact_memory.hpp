@@ -265,50 +265,83 @@ struct surface_record {
   id body;
 };
 
-/// The memory of contacts with the mesh, by numbers of particles.
+/// The memory of contacts with the mesh.
 template <class S, class List>
 struct surface_memory_ref {
   static constexpr int max_contacts = 4;  ///< contacts of a particle that are remembered: the deepest
 
-  surface_record<S, List>* records;  ///< contact k of particle i is at k * capacity + i
-  std::uint8_t* counts;
-  std::size_t capacity;
+  surface_record<S, List>* records;
+  std::uint8_t* counts;       ///< by numbers of particles
+  std::uint32_t const* rows;  ///< by numbers: the row of records that a particle has, if it has any; null: its number
+  std::size_t contacts_apart, rows_apart;
+
+  COLLIDE_HD_INLINE surface_record<S, List>& record(std::size_t i, int k) const {
+    std::size_t const row = rows != nullptr ? rows[i] : i;
+    return records[std::size_t(k) * contacts_apart + row * rows_apart];
+  }
 };
+/// Room on the host for those of n particles that are at a wall: others get it when they come.
+inline std::size_t few_at_walls(std::size_t n) { return std::min(n, n / 16 + 64); }
+
+/// On a device each particle has a row of records; on the host only those have one that may press on the mesh.
 template <class S, class List>
 class surface_memory {
+  using ref_type = surface_memory_ref<S, List>;
+
  public:
-  void reserve(std::pmr::memory_resource* resource, std::size_t n) {
-    records_.reserve(resource, n * surface_memory_ref<S, List>::max_contacts);
+  void reserve(std::pmr::memory_resource* resource, std::size_t n, bool on_host) {
+    are_few_ = on_host;
+    records_.reserve(resource, max_contacts * (on_host ? few_at_walls(n) : n));
     counts_.reserve(resource, n);
+    if (on_host) rows_.reserve(resource, n);
   }
   template <class Space>
   void clear(Space& space, std::size_t n) {
-    if (n != 0) space.fill(counts_.data(), 0, n);
+    used_ = 0;
+    if (n == 0) return;
+    space.fill(counts_.data(), 0, n);
+    if (are_few_) std::fill_n(rows_.data(), n, none);
   }
-  std::size_t bytes() const { return records_.bytes() + counts_.bytes(); }
-  surface_memory_ref<S, List> ref(std::size_t n) const { return {records_.data(), counts_.data(), n}; }
+  /// On the host: gives rows to `listed` particles of `n`. May allocate.
+  template <class Space, class Pressing>
+  void give_rows(Space const& space, std::size_t n, Pressing const* listed, std::size_t size) {
+    auto const lacking = [&] {
+      return static_cast<std::size_t>(
+          std::count_if(listed, listed + size, [&](Pressing const& p) { return rows_.data()[p.number] == none; }));
+    };
+    if (used_ + lacking() > rows()) {
+      take_rows_back(n);
+      if (used_ + lacking() > rows()) grow(space, used_ + lacking());
+    }
+    for (std::size_t k = 0; k < size; ++k) {
+      std::uint32_t& row = rows_.data()[listed[k].number];
+      if (row == none) row = used_++;
+    }
+  }
+  std::size_t bytes() const { return records_.bytes() + counts_.bytes() + rows_.bytes(); }
+  ref_type ref(std::size_t n) const { return ref_of(records_.data(), counts_.data(), rows_.data(), n); }
 
-  /// f(array with a value of each of `n` particles) for all that is used; on the host.
+  /// f(array with a value of each particle) for all that is kept by their numbers; on the host.
   template <class F>
-  void for_each_array(std::size_t n, F const& f) const {
-    std::size_t const max_count = n == 0 ? 0 : *std::max_element(counts_.data(), counts_.data() + n);
-    for (std::size_t k = 0; k < max_count; ++k) f(records_.data() + k * n);
+  void for_each_array(F const& f) const {
+    f(rows_.data());
     f(counts_.data());
   }
-  static constexpr std::size_t widest = sizeof(surface_record<S, List>);  ///< bytes of a value of an array
+  static constexpr std::size_t widest = sizeof(std::uint32_t);  ///< bytes of a value of an array
 
   /// For a checkpoint: the contacts of each of `n` particles; the others are bodies. Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
-    std::vector<surface_record<S, List>> records(max_contacts * n);
+    std::vector<surface_record<S, List>> records(are_few_ ? 0 : max_contacts * n);
     std::vector<std::uint8_t> counts(n);
-    if (n != 0) space.copy_to_host(records.data(), records_.data(), records.size());
+    if (!records.empty()) space.copy_to_host(records.data(), records_.data(), records.size());
     if (n != 0) space.copy_to_host(counts.data(), counts_.data(), n);
+    ref_type const all = are_few_ ? ref(n) : ref_of(records.data(), counts.data(), nullptr, n);
     saved_contacts<S> saved;
     for (std::size_t i = 0; i < n; ++i) {
       saved.counts.push_back(counts[i]);
-      for (std::size_t k = 0; k < counts[i]; ++k) {
-        auto const& r = records[k * n + i];
+      for (int k = 0; k < counts[i]; ++k) {
+        auto const& r = all.record(i, k);
         saved.others.push_back(r.body);
         saved.values.insert(saved.values.end(), r.normal, r.normal + 3);
         saved.values.insert(saved.values.end(), r.record.numbers, r.record.numbers + width);
@@ -316,41 +349,85 @@ class surface_memory {
     }
     return saved;
   }
-  /// May wait.
+  /// After `clear`. May wait.
   template <class Space>
   void restore_contacts(Space& space, saved_contacts<S> const& saved) {
     std::size_t const n = saved.counts.size();
-    std::vector<surface_record<S, List>> records(max_contacts * n);
-    std::vector<std::uint8_t> counts;
+    if (n == 0) return;
+    std::vector<std::uint8_t> const counts(saved.counts.begin(), saved.counts.end());
+    std::vector<surface_record<S, List>> records(are_few_ ? 0 : max_contacts * n);
+    if (are_few_) {
+      for (std::size_t i = 0; i < n; ++i)
+        if (counts[i] != 0) rows_.data()[i] = used_++;
+      records_.reserve(space.resource(), max_contacts * used_);
+    }
+    ref_type const all = are_few_ ? ref(n) : ref_of(records.data(), nullptr, nullptr, n);
     std::size_t at = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      counts.push_back(static_cast<std::uint8_t>(saved.counts[i]));
-      for (std::size_t k = 0; k < saved.counts[i]; ++k, ++at) {
-        auto& r = records[k * n + i];
+      for (int k = 0; k < counts[i]; ++k, ++at) {
+        auto& r = all.record(i, k);
         S const* from = saved.values.data() + at * std::size_t(saved_width);
         r.body = saved.others[at];
         for (int c = 0; c < 3; ++c) r.normal[c] = *from++;
         for (int c = 0; c < width; ++c) r.record.numbers[c] = *from++;
       }
     }
-    if (n == 0) return;
-    space.copy_from_host(records_.data(), records.data(), records.size());
+    if (!are_few_) space.copy_from_host(records_.data(), records.data(), records.size());
     space.copy_from_host(counts_.data(), counts.data(), n);
   }
   static constexpr int width = contact_values<S, List>::width, saved_width = width + 3;
 
  private:
-  static constexpr std::size_t max_contacts = surface_memory_ref<S, List>::max_contacts;
+  static constexpr std::size_t max_contacts = ref_type::max_contacts;
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  std::size_t rows() const { return records_.capacity() / max_contacts; }
+  ref_type ref_of(surface_record<S, List>* records, std::uint8_t* counts, std::uint32_t const* rows,
+                  std::size_t n) const {
+    return {records, counts, rows, rows != nullptr ? 1 : n, rows != nullptr ? max_contacts : 1};
+  }
+
+  /// Those that remember nothing have no row any more, and the others the first ones.
+  void take_rows_back(std::size_t n) {
+    std::vector<std::uint32_t> owners(used_, none);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      std::uint32_t& row = rows_.data()[i];
+      if (row == none) continue;
+      if (counts_.data()[i] == 0) {
+        row = none;
+      } else {
+        owners[row] = i;
+      }
+    }
+    used_ = 0;
+    for (std::size_t row = 0; row < owners.size(); ++row) {
+      if (owners[row] == none) continue;
+      auto const* const from = records_.data() + max_contacts * row;
+      std::copy_n(from, max_contacts, records_.data() + max_contacts * used_);
+      rows_.data()[owners[row]] = used_++;
+    }
+  }
+  template <class Space>
+  void grow(Space const& space, std::size_t rows) {
+    auto longer = grown(space, records_, max_contacts * used_, max_contacts * (rows + rows / 8 - this->rows()));
+    records_ = std::move(longer);
+  }
+
   buffer<surface_record<S, List>> records_;
   buffer<std::uint8_t> counts_;
+  buffer<std::uint32_t> rows_;
+  bool are_few_ = false;
+  std::uint32_t used_ = 0;  ///< rows
 };
 template <class S>
 class surface_memory<S, columns<>> {
  public:
   static constexpr std::size_t widest = 0;
   template <class F>
-  void for_each_array(std::size_t, F const&) const {}
-  void reserve(std::pmr::memory_resource*, std::size_t) {}
+  void for_each_array(F const&) const {}
+  void reserve(std::pmr::memory_resource*, std::size_t, bool) {}
+  template <class Space, class Pressing>
+  void give_rows(Space const&, std::size_t, Pressing const*, std::size_t) {}
   template <class Space>
   void clear(Space&, std::size_t) {}
   std::size_t bytes() const { return 0; }

@@ -103,16 +103,14 @@ class preparation {
         s_.overflow.reserve(resource, padded_size(particles));
       }
     }
-    if constexpr (effects_type::any_pair_contact) s_.neighbours.reserve(s_.space, particles);
-    if constexpr (state_type::has_cell_order) {
-      s_.order.names.reserve(resource, particles);
-      s_.order.moved.reserve(resource,
-                             particles * std::max(decltype(s_.memory)::widest, state_type::surfaces_type::widest));
-    }
+    if constexpr (effects_type::any_pair_contact)
+      s_.neighbours.reserve(s_.space, particles, particles * state_type::widest_moved);
+    if constexpr (state_type::has_cell_order) s_.order.names.reserve(resource, particles);
     if constexpr (effects_type::overlaps) {
-      s_.surfaces.reserve(resource, particles);
+      constexpr bool on_host = execution_space::host_accessible;
+      s_.surfaces.reserve(resource, particles, on_host);
       s_.is_pressing_known = false;
-      s_.pressing.reserve(resource, particles);
+      s_.pressing.reserve(resource, on_host ? few_at_walls(particles) : particles);
       s_.pressing_counts.reserve(resource, 3);
       s_.space.fill(s_.pressing_counts.data(), 0, 3 * sizeof(std::uint32_t));
       if constexpr (!execution_space::host_accessible)

@@ -3,6 +3,7 @@
 /// divide it.
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 
 #include <collide/broad/detail/grid/mesh_statistics.hpp>
@@ -54,6 +55,10 @@ struct simulation_state {
   static constexpr bool has_cell_order =
       meets_once && !effects_type::has_clumps && !contains<columns, alive> &&
       ((!detail::has_begin_step<Effect, execution_space, particles_type, S> || begins_on_ranks<Effect>)&&...);
+
+  /// Bytes of a particle in what is moved then at a time.
+  static constexpr std::size_t widest_moved =
+      has_cell_order ? std::max(column_buffers<S, columns>::widest, surfaces_type::widest) : 0;
 
   execution_space space;
   broad_phase options;

@@ -160,17 +160,20 @@ class step_phases {
       s_.is_in_cell_order = true;
       id* const places = s_.neighbours.in_order();
       if (places == nullptr) return;
-      s_.order.take(s_.space, s_.particles, s_.surfaces, places);
+      s_.order.take(s_.space, s_.particles, s_.surfaces, places, room_to_move());
       for_each([=](std::size_t i) { places[i] = static_cast<id>(i); });
       s_.is_pressing_known = false;
     }
+  }
+  std::byte* room_to_move() {
+    return s_.neighbours.room(s_.space.resource(), s_.particles.size * state_type::widest_moved);
   }
   void leave_cell_order() {
     if constexpr (state_type::has_cell_order) {
       s_.is_in_cell_order = false;
       if (s_.particles.names == nullptr) return;
       std::copy_n(s_.particles.names, s_.particles.size, s_.neighbours.in_order());
-      s_.order.put_back(s_.space, s_.particles, s_.surfaces);
+      s_.order.put_back(s_.space, s_.particles, s_.surfaces, room_to_move());
       s_.is_pressing_known = false;
     }
   }
@@ -271,20 +274,38 @@ class step_phases {
     auto const triangles = mesh_ref<true>(s_, dt);
     using mesh_type = std::decay_t<decltype(triangles)>;
     using memory_type = std::decay_t<decltype(memory)>;
-    pressing_list const list{s_.pressing_counts.data(), s_.pressing.data()};
     bool const stays_listed = state_type::knows_near_mesh && what == meeting::in_step;
     if (!stays_listed || !s_.is_pressing_known || has_body_moved()) {
-      s_.space.fill(list.count, 0, 2 * sizeof(std::uint32_t));  // and the pool is empty
       using list_type = list_pressing<S, effects_type, mesh_type, memory_type>;
       std::uint32_t const lanes = list_type::template lanes_for<execution_space>(s_.particles.size);
-      s_.space.for_each(lanes * s_.particles.size, list_type{s_.particles, s_.effects, triangles, memory, list, what,
-                                                             lanes, stays_listed ? margin_near_mesh(s_) : S(0)});
+      do {
+        s_.space.fill(s_.pressing_counts.data(), 0, 2 * sizeof(std::uint32_t));  // and the pool is empty
+        s_.space.for_each(lanes * s_.particles.size,
+                          list_type{s_.particles, s_.effects, triangles, memory, pressing(), what, lanes,
+                                    stays_listed ? margin_near_mesh(s_) : S(0)});
+      } while (must_list_again());
       if constexpr (state_type::knows_near_mesh) s_.bodies.mark();
     }
     s_.is_pressing_known = stays_listed;
-    s_.space.for_each(execution_space::host_accessible ? *list.count : s_.particles.size,
+    s_.space.for_each(execution_space::host_accessible ? *s_.pressing_counts.data() : s_.particles.size,
                       press_on_mesh<S, effects_type, mesh_type, memory_type>{
-                          s_.particles, s_.effects, triangles, memory, list, overlap_pool_of(s_), dt, what});
+                          s_.particles, s_.effects, triangles, s_.surfaces.ref(s_.particles.size), pressing(),
+                          overlap_pool_of(s_), dt, what});
+  }
+  pressing_list pressing() const {
+    return {s_.pressing_counts.data(), s_.pressing.data(), static_cast<std::uint32_t>(s_.pressing.capacity())};
+  }
+  /// On the host, once particles near the mesh are listed: makes room for them. True if there was too little.
+  bool must_list_again() {
+    if constexpr (execution_space::host_accessible) {
+      std::size_t const count = *s_.pressing_counts.data();
+      if (count > s_.pressing.capacity()) {
+        s_.pressing.reserve(s_.space.resource(), count + count / 8);
+        return true;
+      }
+      s_.surfaces.give_rows(s_.space, s_.particles.size, s_.pressing.data(), count);
+    }
+    return false;
   }
   /// True if a body may have come to particles that are not listed as near the mesh.
   bool has_body_moved() const {

@@ -20,6 +20,7 @@
 #include <collide/effects/detail/sphere_action.hpp>
 #include <collide/exact/detail/numeric/pack.hpp>
 #include <collide/simulation/detail/neighbours/pair_interaction.hpp>
+#include <collide/simulation/detail/neighbours/room_in_turn.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
@@ -361,50 +362,94 @@ struct no_pair_actions {
   static std::size_t bytes() { return 0; }
 };
 
-/// The contacts of lists of neighbours, and those that lists had before, until new ones are made.
+/// Contacts that lists of neighbours had before others are made.
+template <class S, class Record>
+struct contacts_before {
+  std::uint32_t* firsts;  ///< by places: those of each particle with particles behind it
+  std::uint32_t* others;  ///< their places
+  Record* records;
+  std::uint32_t* place_of;  ///< of each particle, by numbers
+
+  static constexpr std::uint32_t none = 0xffffffffu;
+  /// The contact of two places, the first of which comes first.
+  std::uint32_t find(std::uint32_t first, std::uint32_t second) const {
+    for (std::uint32_t k = firsts[first]; k < firsts[first + 1]; ++k)
+      if (others[k] == second) return k;
+    return none;
+  }
+};
+
+/// The contacts of lists of neighbours, and those that lists had before, until new ones are made. The lists themselves,
+/// the cells from which they are made, and the contacts before are needed only until each pair has its item: so they
+/// have the memory in which the step then keeps forces and motions.
 template <class S, class Effects>
 class pair_actions {
   using remembered = typename Effects::remembered;
-  using record = contact_record<S, remembered>;
+  using items_type = pair_items<S, Effects>;
+  using record = typename items_type::record;
+  using action = typename items_type::action;
   using order = sorted_particles<S, without_memory<Effects>>;
   static constexpr bool has_memory = remembered::size != 0;
   static constexpr std::uint32_t none = order::overflow_mark;
-  static constexpr std::size_t usual = 4;  ///< items a particle: in a packed bed there are fewer
 
  public:
-  void reserve(std::pmr::memory_resource* resource, std::size_t n) {
-    for (kept* k : {&now_, &before_}) {
-      k->firsts.reserve(resource, n + 1);
-      k->reserve(resource, usual * n);
-    }
-    actions_.reserve(resource, usual * n + 1);  // one that is read, but not used
-    place_before_.reserve(resource, n);
-    motions_.reserve(resource, n);
+  /// For `n` particles, the table of whose cells has so many numbers and blocks.
+  void reserve(std::pmr::memory_resource* resource, std::size_t n, std::size_t in_table, std::size_t blocks) {
+    reserve_items(resource, usual_items(n));
+    firsts_.reserve(resource, n + 1);
     entry_firsts_.reserve(resource, n + 1);
-    entries_.reserve(resource, 2 * usual * n);
+    give_to_lists(resource, n, in_table, blocks, usual_items(n));
+    give_to_step(resource, n, usual_items(n));
   }
   /// There are no contacts.
   void clear() { was_saved_ = has_before_ = false; }
 
-  pair_items<S, Effects> items() const {
-    return {now_.firsts.data(), now_.pairs.data(), now_.marks.data(),    now_.records.data(),
-            actions_.data(),    motions_.data(),   entry_firsts_.data(), entries_.data()};
+  std::uint32_t *curve = nullptr, *ends = nullptr, *lists = nullptr;  ///< while lists are made; see `sorted_particles`
+
+  items_type items() const {
+    return {firsts_.data(), pairs_.data(), marks_.data(),        records_.data(),
+            actions_,       motions_,      entry_firsts_.data(), entries_.data()};
   }
 
-  /// Before places change: keeps what contacts remember.
-  void keep(order const& o) {
-    if (!has_memory || was_saved_) return;
-    has_before_ = o.header->count != 0;
-    std::swap(now_, before_);
-    std::fill_n(place_before_.data(), o.capacity, none);
-    for (std::uint32_t i = 0; i < o.header->count; ++i) place_before_.data()[o.numbers[i]] = i;
+  /// Before places change, and before lists are made: keeps what contacts remember of `n` particles.
+  template <class Space>
+  void keep(Space const& space, order const& o, std::size_t in_table, std::size_t blocks) {
+    if (was_saved_) return;  // and they have room
+    std::uint32_t const count = has_memory ? o.header->count : 0;
+    items_type const now = items();
+    auto const for_each_contact = [&](std::size_t i, auto const& f) {
+      for (std::uint32_t k = now.firsts[i]; k < now.firsts[i + 1]; ++k)
+        if ((now.marks[k] & now.remembers) != 0) f(k);
+    };
+    std::size_t all = 0;
+    for (std::uint32_t k = 0, end = count == 0 ? 0 : now.firsts[count]; k < end; ++k)
+      all += now.marks[k] & now.remembers;
+    give_to_lists(space.resource(), o.capacity, in_table, blocks, all);
+    has_before_ = count != 0;
+    if (!has_before_) return;
+    space.for_each(count, [&](std::size_t i) {
+      std::uint32_t n = 0;
+      for_each_contact(i, [&](std::uint32_t) { ++n; });
+      before_.firsts[i] = n;
+    });
+    before_.firsts[count] = 0;
+    exclusive_scan(space, before_.firsts, count + 1);
+    std::fill_n(before_.place_of, o.capacity, none);
+    space.for_each(count, [&](std::size_t i) {
+      std::uint32_t at = before_.firsts[i];
+      for_each_contact(i, [&](std::uint32_t k) {
+        before_.others[at] = now.pairs[k].other;
+        before_.records[at++] = now.records[k];
+      });
+      before_.place_of[o.numbers[i]] = static_cast<std::uint32_t>(i);
+    });
   }
 
   /// Once lists are made: each pair gets an item, with what it remembers.
   template <class Space>
   void build(Space const& space, order const& o) {
     std::size_t const count = o.header->count;
-    std::uint32_t *const firsts = now_.firsts.data(), *const entry_firsts = entry_firsts_.data();
+    std::uint32_t *const firsts = firsts_.data(), *const entry_firsts = entry_firsts_.data();
     space.for_each(count, [&](std::size_t i) {
       std::uint32_t behind = 0, all = 0;
       for_each_place(o, i, [&](std::uint32_t place) { behind += place > i, ++all; });
@@ -413,12 +458,12 @@ class pair_actions {
     firsts[count] = entry_firsts[count] = 0;
     exclusive_scan(space, firsts, count + 1);
     exclusive_scan(space, entry_firsts, count + 1);
-    ensure_capacity(space, firsts[count]);
+    if (pairs_.capacity() < firsts[count]) reserve_items(space.resource(), firsts[count] + firsts[count] / 16 + 64);
     space.for_each(count, [&](std::size_t i) {
       std::uint32_t item = firsts[i];
       for_each_place(o, i, [&](std::uint32_t place) {
         if (place <= i) return;
-        now_.pairs.data()[item] = {static_cast<std::uint32_t>(i), place};
+        pairs_.data()[item] = {static_cast<std::uint32_t>(i), place};
         restore(o, static_cast<std::uint32_t>(i), place, item);
         ++item;
       });
@@ -426,10 +471,15 @@ class pair_actions {
     space.for_each(count, [&](std::size_t i) {
       std::uint32_t item = firsts[i], *entry = entries_.data() + entry_firsts[i];
       for_each_place(o, i, [&](std::uint32_t place) {
-        *entry++ = place > i ? 2 * item++ : 2 * now_.find(place, static_cast<std::uint32_t>(i)) + 1;
+        *entry++ = place > i ? 2 * item++ : 2 * item_of(place, static_cast<std::uint32_t>(i)) + 1;
       });
     });
     was_saved_ = has_before_ = false;
+  }
+
+  /// Before `n` particles meet.
+  void begin_meeting(std::pmr::memory_resource* resource, std::size_t n) {
+    if (actions_ == nullptr) give_to_step(resource, n, pairs_.capacity());
   }
 
   /// Particles meet, and sum up. All items of a particle are known once those of the places before it are: so it sums
@@ -440,7 +490,7 @@ class pair_actions {
     std::size_t const count = meet.order.header->count, parts = space.saturating_blocks();
     std::size_t const share = (count + parts - 1) / parts;
     auto const is_alone = [&](std::size_t i) {
-      return parts == 1 || sum.is_alone(i, now_.firsts.data()[i / share * share]);
+      return parts == 1 || sum.is_alone(i, firsts_.data()[i / share * share]);
     };
     for_each_block(space, parts, [&](std::size_t part) {
       std::size_t const end = std::min(count, (part + 1) * share);
@@ -459,32 +509,40 @@ class pair_actions {
     });
   }
 
+  /// Between meetings: memory of at least so many bytes, for anything.
+  std::byte* room(std::pmr::memory_resource* resource, std::size_t bytes) {
+    actions_ = nullptr;
+    return room_.all(resource, bytes);
+  }
+
   /// The memory of contacts of the first `n` particles, by numbers.
   saved_contacts<S> saved(list_state const& header, id const* numbers, std::size_t n) const {
     struct contact {
       id other;
-      std::uint32_t item;
+      record const* from;
       bool is_second;
     };
     std::vector<std::vector<contact>> of(n);
-    bool const waits = header.count == 0;  // for lists
-    kept const& from = waits ? before_ : now_;
-    std::size_t const count = !waits ? header.count : was_saved_ ? saved_ : 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      for (std::uint32_t k = from.firsts.data()[i]; k < from.firsts.data()[i + 1]; ++k) {
-        if ((from.marks.data()[k] & 1) == 0) continue;
-        std::uint32_t const j = from.pairs.data()[k].other;
-        id const a = waits ? i : numbers[i], b = waits ? j : numbers[j];
-        of[a].push_back({b, k, false});
-        of[b].push_back({a, k, true});
-      }
+    auto const add = [&](id a, id b, record const& from) {
+      of[a].push_back({b, &from, false});
+      of[b].push_back({a, &from, true});
+    };
+    if (header.count != 0) {
+      items_type const now = items();
+      for (std::uint32_t k = 0; k < now.firsts[header.count]; ++k)
+        if ((now.marks[k] & now.remembers) != 0)
+          add(numbers[now.pairs[k].place], numbers[now.pairs[k].other], now.records[k]);
+    } else if (was_saved_) {  // and waits for lists
+      for (std::uint32_t i = 0; i < saved_; ++i)
+        for (std::uint32_t k = before_.firsts[i]; k < before_.firsts[i + 1]; ++k)
+          add(i, before_.others[k], before_.records[k]);
     }
     saved_contacts<S> all;
     for (auto& contacts : of) {
       std::sort(contacts.begin(), contacts.end(), [](contact const& a, contact const& b) { return a.other < b.other; });
       all.counts.push_back(static_cast<std::uint32_t>(contacts.size()));
       for (contact const& c : contacts) {
-        record const r = seen_from(c.is_second, from.records.data()[c.item]);
+        record const r = seen_from(c.is_second, *c.from);
         all.others.push_back(c.other);
         all.values.insert(all.values.end(), r.numbers, r.numbers + contact_values<S, remembered>::width);
       }
@@ -492,53 +550,60 @@ class pair_actions {
     return all;
   }
 
-  /// After `clear`: lists that are made have what was saved, as if places had been numbers.
-  void restore(std::pmr::memory_resource* resource, saved_contacts<S> const& from) {
+  /// After `clear`, for `n` particles: lists that are made have what was saved, as if places had been numbers.
+  void restore(std::pmr::memory_resource* resource, saved_contacts<S> const& from, std::size_t n, std::size_t in_table,
+               std::size_t blocks) {
     constexpr std::size_t width = contact_values<S, remembered>::width;
-    before_.reserve(resource, from.others.size() / 2 + 1);
+    give_to_lists(resource, n, in_table, blocks, from.others.size() / 2 + 1);
     was_saved_ = has_before_ = true;
     saved_ = from.counts.size();
+    std::fill_n(before_.place_of, n, none);
     std::uint32_t item = 0;
     std::size_t at = 0;
     for (std::size_t a = 0; a < saved_; ++a) {
-      before_.firsts.data()[a] = item;
-      place_before_.data()[a] = static_cast<std::uint32_t>(a);
+      before_.firsts[a] = item;
+      before_.place_of[a] = static_cast<std::uint32_t>(a);
       for (std::size_t end = at + from.counts[a]; at < end; ++at) {
         if (from.others[at] <= a) continue;
-        before_.pairs.data()[item] = {static_cast<std::uint32_t>(a), from.others[at]};
-        before_.marks.data()[item] = 1;
-        std::copy_n(from.values.begin() + std::ptrdiff_t(at * width), width, before_.records.data()[item++].numbers);
+        before_.others[item] = from.others[at];
+        std::copy_n(from.values.begin() + std::ptrdiff_t(at * width), width, before_.records[item++].numbers);
       }
     }
-    before_.firsts.data()[saved_] = item;
+    before_.firsts[saved_] = item;
   }
 
   std::size_t bytes() const {
-    return now_.bytes() + before_.bytes() + place_before_.bytes() + actions_.bytes() + motions_.bytes() +
-           entry_firsts_.bytes() + entries_.bytes();
+    return firsts_.bytes() + pairs_.bytes() + marks_.bytes() + records_.bytes() + entry_firsts_.bytes() +
+           entries_.bytes() + room_.bytes();
   }
 
  private:
-  struct kept {
-    buffer<std::uint32_t> firsts;
-    buffer<listed_pair> pairs;
-    buffer<std::uint8_t> marks;
-    buffer<record> records;
+  /// In a packed bed there are hardly more.
+  static std::size_t usual_items(std::size_t n) { return 3 * n + n / 2; }
 
-    void reserve(std::pmr::memory_resource* resource, std::size_t items) {
-      pairs.reserve(resource, items);
-      marks.reserve(resource, items);
-      if constexpr (has_memory) records.reserve(resource, items);
-    }
-    std::size_t bytes() const { return firsts.bytes() + pairs.bytes() + marks.bytes() + records.bytes(); }
-    /// The item of two places, the first of which comes first.
-    std::uint32_t find(std::uint32_t first, std::uint32_t second) const {
-      std::uint32_t const end = firsts.data()[first + 1];
-      for (std::uint32_t k = firsts.data()[first]; k < end; ++k)
-        if (pairs.data()[k].other == second) return k;
-      return none;
-    }
-  };
+  void reserve_items(std::pmr::memory_resource* resource, std::size_t n) {
+    pairs_.reserve(resource, n);
+    marks_.reserve(resource, n);
+    if constexpr (has_memory) records_.reserve(resource, n);
+    entries_.reserve(resource, 2 * n);
+  }
+  void give_to_lists(std::pmr::memory_resource* resource, std::size_t n, std::size_t in_table, std::size_t blocks,
+                     std::size_t contacts) {
+    room_.give(resource, in_room(curve, blocks), in_room(ends, in_table), in_room(lists, order::listed * n),
+               in_room(before_.firsts, n + 1), in_room(before_.place_of, n), in_room(before_.others, contacts),
+               in_room(before_.records, contacts));
+    actions_ = nullptr;
+  }
+  void give_to_step(std::pmr::memory_resource* resource, std::size_t n, std::size_t pairs) {
+    room_.give(resource, in_room(motions_, n), in_room(actions_, pairs + 1));  // one that is read, but not used
+  }
+
+  /// The item of two places, the first of which comes first.
+  std::uint32_t item_of(std::uint32_t first, std::uint32_t second) const {
+    std::uint32_t k = firsts_.data()[first];
+    while (pairs_.data()[k].other != second) ++k;
+    return k;
+  }
 
   template <class F>
   static void for_each_place(order const& o, std::size_t i, F const& f) {
@@ -562,30 +627,25 @@ class pair_actions {
   }
 
   void restore(order const& o, std::uint32_t i, std::uint32_t j, std::uint32_t item) {
-    std::uint8_t& mark = now_.marks.data()[item];
-    mark = o.number_at(i) > o.number_at(j) ? pair_items<S, Effects>::is_upward : 0;
+    std::uint8_t& mark = marks_.data()[item];
+    mark = o.number_at(i) > o.number_at(j) ? items_type::is_upward : 0;
     if (!has_memory || !has_before_ || o.is_new(i) || o.is_new(j)) return;
-    std::uint32_t const a = place_before_.data()[o.numbers[i]], b = place_before_.data()[o.numbers[j]];
+    std::uint32_t const a = before_.place_of[o.numbers[i]], b = before_.place_of[o.numbers[j]];
     if (a == none || b == none) return;
     std::uint32_t const from = before_.find(min(a, b), max(a, b));
-    if (from == none || (before_.marks.data()[from] & 1) == 0) return;
-    mark |= pair_items<S, Effects>::remembers;
-    now_.records.data()[item] = seen_from(a > b, before_.records.data()[from]);
+    if (from == none) return;
+    mark |= items_type::remembers;
+    records_.data()[item] = seen_from(a > b, before_.records[from]);
   }
 
-  template <class Space>
-  void ensure_capacity(Space const& space, std::size_t n) {
-    std::size_t const capacity = n + n / 8 + 64;
-    if (now_.pairs.capacity() < n) now_.reserve(space.resource(), capacity);
-    if (actions_.capacity() <= n) actions_.reserve(space.resource(), capacity);
-    if (entries_.capacity() < 2 * n) entries_.reserve(space.resource(), 2 * capacity);
-  }
-
-  kept now_, before_;
-  buffer<std::uint32_t> place_before_;  ///< by numbers
-  buffer<typename pair_items<S, Effects>::action> actions_;
-  buffer<stored_motion<S>> motions_;  ///< by places
-  buffer<std::uint32_t> entry_firsts_, entries_;
+  buffer<std::uint32_t> firsts_, entry_firsts_, entries_;
+  buffer<listed_pair> pairs_;
+  buffer<std::uint8_t> marks_;
+  buffer<record> records_;
+  room_in_turn room_;
+  contacts_before<S, record> before_{};
+  action* actions_ = nullptr;            ///< in a step; else null
+  stored_motion<S>* motions_ = nullptr;  ///< in a step, by places
   bool has_before_ = false, was_saved_ = false;
   std::size_t saved_ = 0;  ///< particles of which contacts were saved
 };

@@ -52,23 +52,28 @@ class verlet_list {
   using state_type = particle_state<S, typename Effects::all>;
 
  public:
-  /// Takes all memory that steps of up to `n` particles need.
+  /// Takes all memory that steps of up to `n` particles need, and as much as is asked for as `room`.
   template <class Space>
-  void reserve(Space const& space, std::size_t n) {
+  void reserve(Space const& space, std::size_t n, [[maybe_unused]] std::size_t room_bytes) {
     std::pmr::memory_resource* const resource = space.resource();
     header_.reserve(resource, 1);
-    if constexpr (works_alone<Space>) curve_.reserve(resource, cells::blocks_for(n));
-    ends_.reserve(resource, cells::blocks_for(n) * cells::stride);
+    std::size_t const blocks = cells::blocks_for(n);
+    if constexpr (Once) {
+      pairs_.reserve(resource, n, blocks * cells::stride, blocks);
+      pairs_.room(resource, room_bytes);
+    } else {
+      if constexpr (works_alone<Space>) curve_.reserve(resource, blocks);
+      ends_.reserve(resource, blocks * cells::stride);
+      lists_.reserve(resource, order::listed * n);
+    }
     numbers_.reserve(resource, n);
     memory_.reserve(resource, n);
     spheres_.reserve(resource, n);
     references_.reserve(resource, n);
     if constexpr (order::has_absent) known_.reserve(resource, n);
     if constexpr (order::on_ranks) is_at_border_.reserve(resource, n);
-    lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
     contacts_.reserve(resource, n, order::listed, runs_.capacity(), !Space::host_accessible);
-    if constexpr (Once) pairs_.reserve(resource, n);
   }
 
   /// For `n` particles, for which there is room, the last `copies` of them other ranks', which at most `border` meet:
@@ -84,6 +89,7 @@ class verlet_list {
     if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
     contacts_.clear(space, n);
     if constexpr (Once) pairs_.clear();
+    places_ = n;
   }
 
   /// For the same `n` particles with such radii: lists are made anew. The smallest keep the skin so thin that small
@@ -124,7 +130,7 @@ class verlet_list {
   template <class Space>
   void restore_contacts(Space& space, saved_contacts<S> const& saved) {
     if constexpr (Once) {
-      pairs_.restore(space.resource(), saved);
+      pairs_.restore(space.resource(), saved, places_, blocks_ * cells::stride, blocks_);
     } else {
       contacts_.restore(space, saved);
     }
@@ -171,14 +177,13 @@ class verlet_list {
     }
     check(space, state, around);
     check_copies(space, state);
-    order const o = order_of(state);
-    std::size_t const n = state.size;
-    std::uint32_t const* const rebuild = &o.header->rebuild;
-    if constexpr (Once) are_new_ = *rebuild != 0;
+    std::size_t const n = state.size, in_table = blocks_ * cells::stride;
+    std::uint32_t const* const rebuild = &header_.data()->rebuild;
     if constexpr (Once) {
-      if (*rebuild != 0) pairs_.keep(o);
+      are_new_ = *rebuild != 0;
+      if (are_new_) pairs_.keep(space, order_of(state), in_table, blocks_);
     }
-    std::size_t const in_table = blocks_ * cells::stride;
+    order const o = order_of(state);
     for_each_if_nonzero(space, rebuild, std::max(n, in_table), clear_cells<S, Effects>{o, in_table});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
     if constexpr (works_alone<Space>) {
@@ -201,6 +206,8 @@ class verlet_list {
 
   /// The places in memory of the lists' particles, in the order of cells. On the host; null if there are no lists.
   id* in_order() const { return header_.capacity() != 0 && header_.data()->count != 0 ? numbers_.data() : nullptr; }
+  /// Until particles meet again: memory for anything, where they meet once a pair.
+  std::byte* room(std::pmr::memory_resource* resource, std::size_t bytes) { return pairs_.room(resource, bytes); }
 
   /// True if there was no room for what some contact remembers. Waits.
   template <class Space>
@@ -233,6 +240,7 @@ class verlet_list {
     order const o = order_of(state);
     std::size_t const n = state.size;
     if constexpr (Once) {
+      pairs_.begin_meeting(space.resource(), n);
       space.for_each(n, store_motions<S, Scene>{state, o, pairs_.items().motions, effects});
       pairs_.interact(space, meet_once<S, Scene>{o, pairs_.items(), effects, dt, what},
                       sum_actions<S, Scene>{{state, o, Effects(effects), dt, what}, pairs_.items()});
@@ -319,11 +327,13 @@ class verlet_list {
   }
 
   order order_of(state_type const& state) const {
+    std::uint32_t *curve = curve_.data(), *ends = ends_.data(), *lists = lists_.data();
+    if constexpr (Once) curve = pairs_.curve, ends = pairs_.ends, lists = pairs_.lists;
     return {around_,
             cells_,
             small_,
-            curve_.data(),
-            ends_.data(),
+            curve,
+            ends,
             header_.data(),
             numbers_.data(),
             state.names,
@@ -331,7 +341,7 @@ class verlet_list {
             references_.data(),
             known_.data(),
             memory_.state(state.size, state.placed, state.common_radius),
-            lists_.data(),
+            lists,
             state.size,
             runs_.data(),
             runs_.capacity(),
@@ -369,7 +379,8 @@ class verlet_list {
   cells cells_{};
   small_cells<S> small_{};
   S skin_{};
-  std::size_t blocks_ = 0, listed_ = 0;          ///< how many particles have lists
+  std::size_t blocks_ = 0, places_ = 0;          ///< of the table; of particles
+  std::size_t listed_ = 0;                       ///< how many particles have lists
   bool are_new_ = false, are_complete_ = false;  ///< for particles where they are: `check` has just found that
   buffer<state_of_lists> header_;
   std::size_t at_border_ = 0;         ///< particles that copies of other ranks' may meet, while lists are complete

@@ -128,8 +128,9 @@ struct pressing_particle {
 
 /// Which particles may press on the mesh, in any order.
 struct pressing_list {
-  std::uint32_t* count;
+  std::uint32_t* count;  ///< also of those for which there was no room
   pressing_particle* particles;
+  std::uint32_t capacity;
 };
 
 /// Forgets what the mesh gave to a particle.
@@ -202,6 +203,7 @@ struct list_pressing {
     std::uint32_t slot = 0;
     if (share == 0) slot = fetch_add(found.count, 1u);
     with_lanes([&](auto const&, auto const& shuffle) { slot = shuffle(slot, 0); });
+    if (slot >= found.capacity) return;
     pressing_particle& to = found.particles[slot];
     if (share == 0) to.number = mine.number, to.met = met;
     COLLIDE_NO_UNROLL
@@ -468,7 +470,7 @@ struct press_on_mesh {
     S best_match = S(0.5), shared_match = S(0.5);
     COLLIDE_NO_UNROLL
     for (int k = 0; k < before; ++k) {
-      auto const& r = memory.records[std::size_t(k) * memory.capacity + i];
+      auto const& r = memory.record(i, k);
       S const cosine = dot(vec3<S>(r.normal[0], r.normal[1], r.normal[2]), o.normal);
       S const match = r.body == o.body ? cosine + S(1e-3) : cosine;
       if (match > shared_match) shared_match = match, shared = k;
@@ -477,7 +479,7 @@ struct press_on_mesh {
     if (best < 0 && o.has_saddle()) best = shared;
     if (best < 0) return false;
     used |= 1u << best;
-    values = memory.records[std::size_t(best) * memory.capacity + i].record.values();
+    values = memory.record(i, best).record.values();
     return true;
   }
 
@@ -485,7 +487,7 @@ struct press_on_mesh {
                               values_type const* values) const {
     COLLIDE_NO_UNROLL
     for (int k = 0; k < kept; ++k) {
-      auto& r = memory.records[std::size_t(k) * memory.capacity + i];
+      auto& r = memory.record(i, k);
       r.record.set(values[k]);
       for (int c = 0; c < 3; ++c) r.normal[c] = normals[k][c];
       r.body = bodies[k];
