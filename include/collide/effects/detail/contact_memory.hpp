@@ -59,9 +59,9 @@ struct contact_values<S, columns<C...>> : contact_value<C, S>... {
   }
 };
 
-/// The memory of a contact as it is stored: to be read at once.
+/// The memory of a contact as it is stored.
 template <class S, class List>
-struct alignas(contact_values<S, List>::width > 2 ? 4 * sizeof(S) : sizeof(S)) contact_record {
+struct contact_numbers {
   S numbers[contact_values<S, List>::width > 0 ? contact_values<S, List>::width : 1];
 
   COLLIDE_HD_INLINE contact_values<S, List> values() const {
@@ -73,13 +73,10 @@ struct alignas(contact_values<S, List>::width > 2 ? 4 * sizeof(S) : sizeof(S)) c
     v.for_each_number([&](S& x, int k, int) { numbers[k] = x; });
   }
 };
-
-/// A contact that was kept while lists are made anew.
+/// To be read at once.
 template <class S, class List>
-struct kept_contact {
-  contact_record<S, List> record;
-  id other;  ///< number of the other particle
-};
+struct alignas(contact_values<S, List>::width > 2 ? 4 * sizeof(S) : sizeof(S)) contact_record
+    : contact_numbers<S, List> {};
 
 /// The kept contacts of a particle, in the order of the numbers of the others.
 struct kept_range {
@@ -108,10 +105,11 @@ template <class S, class List>
 struct contact_memory_ref {
   S* numbers;
   std::size_t items_apart, numbers_apart;
-  std::uint32_t* touching;      ///< of the particle at each place, a bit for each item of its list
-  std::uint8_t* run_touching;   ///< of each item of runs
-  kept_contact<S, List>* kept;  ///< while lists are made anew
-  kept_range* kept_of;          ///< of each particle, by its number
+  std::uint32_t* touching;         ///< of the particle at each place, a bit for each item of its list
+  std::uint8_t* run_touching;      ///< of each item of runs
+  contact_numbers<S, List>* kept;  ///< contacts while lists are made anew,
+  id* kept_others;                 ///< and the numbers of the other particles
+  kept_range* kept_of;             ///< of each particle, by its number
 
   COLLIDE_HD_INLINE contact_slot<S, List> slot(std::size_t item) const {
     return {numbers + item * items_apart, numbers_apart};
@@ -171,14 +169,16 @@ class contact_memory {
     if (n != 0) space.copy_to_host(ranges.data(), kept_of_.data(), n);
     std::size_t all = 0;
     for (auto const& r : ranges) all = r.first + r.count > all ? r.first + r.count : all;
-    std::vector<kept_contact<S, List>> kept(all);
+    std::vector<contact_numbers<S, List>> kept(all);
+    std::vector<id> others(all);
     if (all != 0) space.copy_to_host(kept.data(), kept_.data(), all);
+    if (all != 0) space.copy_to_host(others.data(), kept_others_.data(), all);
     saved_contacts<S> saved;
     for (auto const& r : ranges) {
       saved.counts.push_back(r.count);
       for (std::size_t k = r.first; k < std::size_t{r.first} + r.count; ++k) {
-        saved.others.push_back(kept[k].other);
-        saved.values.insert(saved.values.end(), kept[k].record.numbers, kept[k].record.numbers + width);
+        saved.others.push_back(others[k]);
+        saved.values.insert(saved.values.end(), kept[k].numbers, kept[k].numbers + width);
       }
     }
     return saved;
@@ -186,20 +186,20 @@ class contact_memory {
   template <class Space>
   void restore(Space& space, saved_contacts<S> const& saved) {
     std::vector<kept_range> ranges;
-    std::vector<kept_contact<S, List>> kept(saved.others.size());
+    std::vector<contact_numbers<S, List>> kept(saved.others.size());
     std::uint32_t first = 0;
     for (std::uint32_t const count : saved.counts) {
       ranges.push_back({first, count});
       first += count;
     }
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      kept[k].other = saved.others[k];
+    for (std::size_t k = 0; k < kept.size(); ++k)
       for (std::size_t w = 0; w < std::size_t(width); ++w)
-        kept[k].record.numbers[w] = saved.values[k * std::size_t(width) + w];
-    }
+        kept[k].numbers[w] = saved.values[k * std::size_t(width) + w];
     if (!ranges.empty()) space.copy_from_host(kept_of_.data(), ranges.data(), ranges.size());
-    kept_.reserve(space.resource(), kept.size());
-    if (!kept.empty()) space.copy_from_host(kept_.data(), kept.data(), kept.size());
+    reserve_kept(space.resource(), kept.size());
+    if (kept.empty()) return;
+    space.copy_from_host(kept_.data(), kept.data(), kept.size());
+    space.copy_from_host(kept_others_.data(), saved.others.data(), kept.size());
   }
 
   void reserve(std::pmr::memory_resource* resource, std::size_t particles, std::size_t listed, std::size_t in_runs,
@@ -207,7 +207,7 @@ class contact_memory {
     std::size_t const items = listed * particles + in_runs;
     numbers_.reserve(resource, std::size_t(width) * items);
     are_side_by_side_ = side_by_side;
-    kept_.reserve(resource, items);
+    reserve_kept(resource, items);
     touching_.reserve(resource, particles);
     kept_of_.reserve(resource, particles);
     run_touching_.reserve(resource, in_runs);
@@ -221,27 +221,33 @@ class contact_memory {
   /// Makes room to keep more, once nothing is kept.
   template <class Space>
   void grow_kept(Space const& space, std::size_t more) {
-    kept_.reserve(space.resource(), kept_.capacity() + more);
+    reserve_kept(space.resource(), kept_.capacity() + more);
   }
   template <class Space>
   void clear(Space& space, std::size_t n) {
     space.fill(kept_of_.data(), 0, n * sizeof(kept_range));
   }
   std::size_t bytes() const {
-    return numbers_.bytes() + kept_.bytes() + touching_.bytes() + kept_of_.bytes() + run_touching_.bytes();
+    return numbers_.bytes() + kept_.bytes() + kept_others_.bytes() + touching_.bytes() + kept_of_.bytes() +
+           run_touching_.bytes();
   }
   contact_memory_ref<S, List> ref() const {
-    return {numbers_.data(),      items_apart(), numbers_apart(), touching_.data(),
-            run_touching_.data(), kept_.data(),  kept_of_.data()};
+    return {numbers_.data(),      items_apart(), numbers_apart(),     touching_.data(),
+            run_touching_.data(), kept_.data(),  kept_others_.data(), kept_of_.data()};
   }
 
  private:
+  void reserve_kept(std::pmr::memory_resource* resource, std::size_t contacts) {
+    kept_.reserve(resource, contacts);
+    kept_others_.reserve(resource, contacts);
+  }
   std::size_t items_apart() const { return are_side_by_side_ ? 1 : std::size_t(width); }
   std::size_t numbers_apart() const { return are_side_by_side_ ? numbers_.capacity() / std::size_t(width) : 1; }
 
   buffer<S> numbers_;
   bool are_side_by_side_ = false;
-  buffer<kept_contact<S, List>> kept_;
+  buffer<contact_numbers<S, List>> kept_;
+  buffer<id> kept_others_;
   buffer<std::uint32_t> touching_;
   buffer<kept_range> kept_of_;
   buffer<std::uint8_t> run_touching_;
@@ -260,7 +266,7 @@ class contact_memory<S, columns<>> {
 /// triangle, maybe to that of another body, and its contact goes on; that of another wall has another normal.
 template <class S, class List>
 struct surface_record {
-  contact_record<S, List> record;
+  contact_numbers<S, List> record;
   S normal[3];
   id body;
 };

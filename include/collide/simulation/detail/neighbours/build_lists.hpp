@@ -94,9 +94,8 @@ struct clear_cells {
     m.kept_of[order.numbers[place]] = {first, touching};
     std::uint32_t n = first;
     order.for_each_remembered(place, [&](std::uint32_t other, std::size_t item) {
-      kept_contact<S, typename ordered::remembered>& kept = m.kept[n++];
-      kept.record.set(m.slot(item).values());
-      kept.other = order.number_at(other);
+      m.kept[n].set(m.slot(item).values());
+      m.kept_others[n++] = order.number_at(other);
     });
   }
 };
@@ -250,10 +249,10 @@ struct build_lists {
     kept_range& kept = m.kept_of[order.numbers[i]];
     std::uint32_t n = 0;
     for (std::uint32_t k = kept.first; k < kept.first + kept.count; ++k) {
-      id const other = m.kept[k].other;
+      id const other = m.kept_others[k];
       while (n < size && order.number_at(places[n]) < other) ++n;
       if (n == size || order.number_at(places[n]) != other) continue;
-      if (!order.is_new(i) && !order.is_new(places[n])) write(n, m.kept[k].record);
+      if (!order.is_new(i) && !order.is_new(places[n])) write(n, m.kept[k]);
     }
     kept.count = 0;
   }
