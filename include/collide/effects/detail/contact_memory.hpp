@@ -108,7 +108,7 @@ struct contact_memory_ref {
   std::uint32_t* touching;         ///< of the particle at each place, a bit for each item of its list
   std::uint8_t* run_touching;      ///< of each item of runs
   contact_numbers<S, List>* kept;  ///< contacts while lists are made anew,
-  id* kept_others;                 ///< and the numbers of the other particles
+  id* kept_others;                 ///< numbers of the other particles in these
   kept_range* kept_of;             ///< of each particle, by its number
 
   COLLIDE_HD_INLINE contact_slot<S, List> slot(std::size_t item) const {
@@ -393,7 +393,7 @@ class surface_memory {
     return {records, counts, rows, rows != nullptr ? 1 : n, rows != nullptr ? max_contacts : 1};
   }
 
-  /// Those that remember nothing have no row any more, and the others the first ones.
+  /// Particles that remember nothing have no row any more, and the others the first ones.
   void take_rows_back(std::size_t n) {
     std::vector<std::uint32_t> owners(used_, none);
     for (std::uint32_t i = 0; i < n; ++i) {

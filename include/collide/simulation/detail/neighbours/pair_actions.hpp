@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
+#include <collide/core/memory.hpp>
 #include <collide/effects/detail/sphere_action.hpp>
 #include <collide/exact/detail/numeric/pack.hpp>
 #include <collide/simulation/detail/neighbours/pair_interaction.hpp>
-#include <collide/simulation/detail/neighbours/room_in_turn.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 

@@ -128,7 +128,7 @@ struct pressing_particle {
 
 /// Which particles may press on the mesh, in any order.
 struct pressing_list {
-  std::uint32_t* count;  ///< also of those for which there was no room
+  std::uint32_t* count;  ///< of all, though there may not be room for them
   pressing_particle* particles;
   std::uint32_t capacity;
 };
