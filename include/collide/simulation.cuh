@@ -191,8 +191,7 @@ class simulation {
   /// Advances by the time `dt`. Throws `error` if `dt` is not above 0 and finite, or longer than an effect allows
   /// (`largest_time_step` is shorter), if an effect's parameter makes no sense, before `set`, and before `set_mesh` if
   /// an effect touches the mesh; `cuda_error` if a kernel cannot be launched. Does not wait; allocates nothing, but on
-  /// the host for neighbours, or particles at walls, beyond the room of `reserve`. O(n) for n particles, and their
-  /// contacts.
+  /// the host beyond the room of `reserve`. O(n) for n particles, and their contacts.
   void step(S dt) {
     auto happens = phases();
     happens.check_step(dt);
