@@ -59,12 +59,16 @@ struct tree_policy {
     }
 
     /// An order of many points in which neighbours search the same nodes; null where the one that they have will do.
-    template <class Space>
-    id const* search_order(Space& space, sphere_view<S> const& spheres) {
+    /// Points outside of searched(box of the mesh) end at the root.
+    template <class Space, class Searched>
+    id const* search_order(Space& space, sphere_view<S> const& spheres, [[maybe_unused]] Searched const& searched) {
       if (spheres.size() < bvh_tuning<Space>::min_sorted_points) return nullptr;
       if constexpr (bvh_tuning<Space>::divides_by_area) {
-        bool const is_large = has_tree_ && mesh_.size() >= bvh_tuning<Space>::min_triangles_to_sort;
-        return is_large ? on_curve_.sort(space, spheres, nodes_.data()->box(), tree_origin(mesh_)) : nullptr;
+        // the fewer triangles there are the less is saved by each point that looks for them
+        double const fewest = bvh_tuning<Space>::min_triangles_to_sort / static_cast<double>(mesh_.size());
+        if (!has_tree_ || fewest > 1) return nullptr;
+        aabb<float> const around = nodes_.data()->box();
+        return on_curve_.sort(space, spheres, around, searched(around), fewest, tree_origin(mesh_));
       } else {
         return points_.sort(space, spheres, radix_.summary());
       }

@@ -193,10 +193,10 @@ struct per_sphere {
     }
 
     /// An order in which points search faster, or null, if the policy has one, and room for it.
-    template <class Space, class Index = policy_index>
-    auto search_order(Space& space, sphere_view<S> const& spheres)
-        -> decltype(std::declval<Index&>().search_order(space, spheres)) {
-      return index_.search_order(space, spheres);
+    template <class Space, class Searched, class Index = policy_index>
+    auto search_order(Space& space, sphere_view<S> const& spheres, Searched const& searched)
+        -> decltype(std::declval<Index&>().search_order(space, spheres, searched)) {
+      return index_.search_order(space, spheres, searched);
     }
     template <class Space, class Index = policy_index>
     auto reserve(Space& space, std::size_t spheres) -> decltype(std::declval<Index&>().reserve(space, spheres)) {

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
+#include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/exact/detail/predicates/exact_ray.hpp>
 #include <collide/narrow/detail/intersects.hpp>
 #include <collide/sinks/detail/array_in_space.hpp>
@@ -77,6 +79,11 @@ struct find_inside {
   template <class S, class Search>
   COLLIDE_HD void operator()(std::size_t i, sphere<S> const& s, mesh_view<S> const& mesh, Search const& search) const {
     to[i] = parity_of(s.centre, mesh, search).inside() ? 1 : 0;
+  }
+
+  aabb<float> searched(aabb<float> mesh) const {
+    mesh.lower[2] = -std::numeric_limits<float>::infinity();
+    return mesh;
   }
 };
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include <collide/core/nearest_triangle.hpp>
+#include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/narrow/detail/nearest_search.hpp>
 #include <collide/sinks/detail/array_in_space.hpp>
@@ -128,6 +129,16 @@ struct measure_nearest_foot {
     vec3<double> direction;
     nearest.set(i, s,
                 exact_nearest_search<S>::result_of(nearest.to[i], mesh, s.centre, nearest.reach_of(s), direction));
+  }
+
+  /// As of points; spheres may reach it from farther away.
+  aabb<float> searched(aabb<float> mesh) const {
+    auto const reach = static_cast<float>(min(max_distance, S(std::numeric_limits<float>::max())));
+    for (int k = 0; k < 3; ++k) {
+      mesh.lower[k] -= reach;
+      mesh.upper[k] += reach;
+    }
+    return mesh;
   }
 };
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
+#include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/query/concepts.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
 #include <collide/query/detail/deferred_pairs.hpp>
@@ -74,9 +76,27 @@ template <class Index, class S>
 using index_for_each_on_ray = decltype(std::declval<Index const&>().ref().for_each_on_ray(
     std::declval<vec3<S> const&>(), std::declval<bool (&)(id)>()));
 
-template <class Index, class Space, class S>
-using index_search_order =
-    decltype(std::declval<Index&>().search_order(std::declval<Space&>(), std::declval<sphere_view<S> const&>()));
+/// Where points are whose search goes on beyond the box of a mesh: everywhere, unless the search functor tells.
+template <class F>
+struct searched_by {
+  F const& f;
+
+  template <class G>
+  using call = decltype(std::declval<G const&>().searched(aabb<float>{}));
+
+  aabb<float> operator()([[maybe_unused]] aabb<float> const& mesh) const {
+    if constexpr (is_valid<call, F>) {
+      return f.searched(mesh);
+    } else {
+      constexpr float far = std::numeric_limits<float>::infinity();
+      return {{-far, -far, -far}, {far, far, far}};
+    }
+  }
+};
+
+template <class Index, class Space, class S, class F>
+using index_search_order = decltype(std::declval<Index&>().search_order(
+    std::declval<Space&>(), std::declval<sphere_view<S> const&>(), std::declval<searched_by<F> const&>()));
 
 template <class Index, class NarrowPhase, class Space, class Spheres>
 using index_expected_hits = decltype(std::declval<Index&>().template expected_hits<NarrowPhase>(
@@ -146,8 +166,8 @@ void query_pass<Index, NarrowPhase, Space, S>::search(F const& f) const {
   using ref_type = decltype(index.ref());
   ref_type const ref = mesh.size() != 0 ? index.ref() : ref_type{};
   id const* order = nullptr;
-  if constexpr (is_valid<index_search_order, Index, Space, S>) {
-    if (mesh.size() != 0) order = index.search_order(space, spheres);
+  if constexpr (is_valid<index_search_order, Index, Space, S, F>) {
+    if (mesh.size() != 0) order = index.search_order(space, spheres, searched_by<F>{f});
   }
   if constexpr (query_tuning<Space>::defers_exact_tests && is_valid<search_passes, F>) {
     using first = typename F::search_pass;

@@ -106,29 +106,45 @@ struct place_on_morton_curve {
   }
 };
 
+/// The numbers up to n, in parts for blocks on the host.
+struct parts_of {
+  static constexpr std::size_t max_count = 16, min_size = 1 << 14;
+
+  std::size_t n, count, share;
+
+  template <class Space>
+  parts_of(Space const& space, std::size_t n)
+      : n{n},
+        count{std::min({n / min_size + 1, space.saturating_blocks(), max_count})},
+        share{(n + count - 1) / count} {}
+
+  std::size_t begin(std::size_t part) const { return std::min(part * share, n); }
+  template <class F>
+  void each_of(std::size_t part, F const& f) const {
+    for (std::size_t i = begin(part), end = begin(part + 1); i < end; ++i) f(i);
+  }
+};
+
 /// Brings triangles into the order of ten bits of their places, from `from` to `to`; those of equal bits stay as they
 /// are. O(n).
 template <class Space>
 void sort_by_digit(Space& space, triangle_on_curve const* from, triangle_on_curve* to, std::size_t n, int shift) {
-  constexpr std::size_t digits = 1 << 10, max_count = 16, min_count = 1 << 14;  // parts, and triangles in a part
-  std::size_t const parts = std::min({n / min_count + 1, space.saturating_blocks(), max_count}),
-                    share = (n + parts - 1) / parts;
-  std::uint32_t begins[max_count][digits] = {};
+  constexpr std::size_t digits = 1 << 10;
+  parts_of const parts(space, n);
+  std::uint32_t begins[parts_of::max_count][digits] = {};
   auto const digit = [&](std::size_t i) { return from[i].place >> shift & (digits - 1); };
-  auto const each_of = [&](std::size_t part, auto const& f) {
-    for (std::size_t i = part * share; i < std::min((part + 1) * share, n); ++i) f(i);
-  };
-  for_each_block(space, parts, [&](std::size_t p) { each_of(p, [&](std::size_t i) { ++begins[p][digit(i)]; }); });
+  for_each_block(space, parts.count,
+                 [&](std::size_t p) { parts.each_of(p, [&](std::size_t i) { ++begins[p][digit(i)]; }); });
   std::uint32_t begin = 0;
   for (std::size_t d = 0; d < digits; ++d) {
-    for (std::size_t p = 0; p < parts; ++p) {
+    for (std::size_t p = 0; p < parts.count; ++p) {
       std::uint32_t const count = begins[p][d];
       begins[p][d] = begin;
       begin += count;
     }
   }
-  for_each_block(space, parts,
-                 [&](std::size_t p) { each_of(p, [&](std::size_t i) { to[begins[p][digit(i)]++] = from[i]; }); });
+  for_each_block(space, parts.count,
+                 [&](std::size_t p) { parts.each_of(p, [&](std::size_t i) { to[begins[p][digit(i)]++] = from[i]; }); });
 }
 
 /// A mesh as groups of triangles that are close to each other: its own triangles eight by eight, or others.

@@ -213,33 +213,60 @@ class points_on_curve {
     spare_.reserve(space.resource(), n);
   }
 
-  /// Their numbers in order; null if points that follow each other mostly are near each other. O(points). `around` is
-  /// the box of the mesh, as seen from `origin`.
+  /// Their numbers in order, those outside of `searched` last; null if a smaller part of the points than `fewest` is in
+  /// there, or those that follow each other mostly are near each other. O(points). `around` is the box of the mesh;
+  /// both are as seen from `origin`.
   template <class Space>
-  id const* sort(Space& space, sphere_view<S> const& points, aabb<float> const& around, vec3<S> const& origin) {
+  id const* sort(Space& space, sphere_view<S> const& points, aabb<float> const& around, aabb<float> const& searched,
+                 double fewest, vec3<S> const& origin) {
     float widest = 0;
     for (int k = 0; k < 3; ++k) widest = max(widest, around.upper[k] / 2 - around.lower[k] / 2);
     float const scale = 512 / widest;
-    auto const place_of = [&](std::size_t i) {
-      vec3<S> const p = points[i].centre;
+    auto const point = [&](std::size_t i) { return tree_point(points[i].centre, origin); };
+    auto const place_of = [&](tree_point const& p) {
       std::uint32_t x[3];
       for (int k = 0; k < 3; ++k) {
-        float const at = (float_below(p[k] - origin[k]) - around.lower[k]) * scale;
+        float const at = (p.lower[k] - around.lower[k]) * scale;
         x[k] = static_cast<std::uint32_t>(at > 0 ? min(at, 1023.0f) : 0.0f);  // also of what is NaN
       }
       return morton_place(x[0], x[1], x[2]);
     };
     std::size_t const n = points.size(), step = n / 256 + 1;
-    std::size_t apart = 0, pairs = 0;
-    for (std::size_t i = 1; i < n; i += step, ++pairs) apart += place_of(i - 1) >> 15 != place_of(i) >> 15;
-    if (4 * apart <= pairs) return nullptr;
+    std::size_t apart = 0, pairs = 0, samples = 0;
+    for (std::size_t i = 1; i < n; i += step, ++samples) {
+      bool const counts = overlap(searched, point(i));
+      pairs += counts;
+      apart += counts && place_of(point(i - 1)) >> 15 != place_of(point(i)) >> 15;
+    }
+    if (4 * apart <= pairs || static_cast<double>(pairs) < fewest * static_cast<double>(samples)) return nullptr;
     reserve(space, n);
     triangle_on_curve *const order = order_.data(), *const spare = spare_.data();
-    space.for_each(n, [&](std::size_t i) { order[i] = {place_of(i), static_cast<id>(i)}; });
-    sort_by_digit(space, order, spare, n, 10);  // a hundred cells on an axis are enough
-    sort_by_digit(space, spare, order, n, 20);
+    parts_of const parts(space, n);
+    std::size_t ends[parts_of::max_count], there = 0;
+    for_each_block(space, parts.count, [&](std::size_t p) {
+      std::size_t to = parts.begin(p);
+      parts.each_of(p, [&](std::size_t i) {
+        tree_point const at = point(i);
+        if (overlap(searched, at)) order[to++] = {place_of(at), static_cast<id>(i)};
+      });
+      ends[p] = to;
+    });
+    for (std::size_t p = 0; p < parts.count; ++p) {
+      std::size_t const begin = parts.begin(p), size = ends[p] - begin;
+      if (begin != there) std::copy(order + begin, order + ends[p], order + there);
+      ends[p] = there += size;
+    }
+    sort_by_digit(space, order, spare, there, 10);  // a hundred cells on an axis are enough
+    sort_by_digit(space, spare, order, there, 20);
     id* const numbers = reinterpret_cast<id*>(spare);
-    space.for_each(n, [&](std::size_t i) { numbers[i] = order[i].number; });
+    space.for_each(there, [&](std::size_t i) { numbers[i] = order[i].number; });
+    if (there == n) return numbers;
+    for_each_block(space, parts.count, [&](std::size_t p) {
+      std::size_t to = there + parts.begin(p) - (p == 0 ? 0 : ends[p - 1]);
+      parts.each_of(p, [&](std::size_t i) {
+        if (!overlap(searched, point(i))) numbers[to++] = static_cast<id>(i);
+      });
+    });
     return numbers;
   }
 
