@@ -4,12 +4,13 @@
 ///
 /// There are 40 families of random scenes: triangles compact, long, in bundles, giants among small ones, of two sizes,
 /// few, many; spheres few, many, clustered, far; radii from 1:1 to 1:1000. Prints a line of JSON for each: milliseconds
-/// of build and query (`first`), and of the same query again (`again`), of each broad phase, of `bucket` also where
-/// `build` is given the largest radius, and how `automatic` compares with the faster one. Even families are to tune on,
-/// odd ones to judge by. SCALE divides the numbers of triangles and spheres. On the host, time is that of one
-/// processor; on a device, between events. Built by hand: nvcc -x cu -std=c++17 -O3 -arch=sm_90 --extended-lambda
-/// -Iinclude -Iexamples -Ibench, or with g++ for the host.
+/// of build and query (`first`), and the mean of the same query again four times (`again`), of each broad phase, least
+/// of several in turn, of `bucket` also where `build` is given the largest radius, and how `automatic` compares with
+/// the faster one. Even families are to tune on, odd ones to judge by. SCALE divides the numbers of triangles and
+/// spheres. On the host, time is that of one processor; on a device, between events. Built by hand: nvcc -x cu
+/// -std=c++17 -O3 -arch=sm_90 --extended-lambda -Iinclude -Iexamples -Ibench, or with g++ for the host.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -196,34 +197,30 @@ struct watch_of<collide::host> : bench::processor_stopwatch {
   explicit watch_of(collide::host const&) {}
 };
 
-struct taken {
-  double first_ms, again_ms, cell;  ///< the width of cells in the end
-};
-
-/// Least memory is allocated: the detector has seen the scene once. `build` is given the radius if there is one.
+/// One of the broad phases, and the least of what it took.
 template <class Broad, class Space>
-taken time(Space const& space, collide::mesh_view<float> mesh, collide::sphere_view<float> spheres, int runs,
-           std::uint64_t& pairs, float radius = -1) {
-  collide::detector<Broad, collide::karabassi<>, Space> detector(space);
+struct contestant {
+  float radius;  ///< that `build` is given, if it is not negative
+  collide::detector<Broad, collide::karabassi<>, Space> detector;
   collide::pairs found;
-  watch_of<Space> watch(space);
-  std::vector<double> first, again;
-  double spent = 0;
-  for (int k = 0; k <= runs && spent < 2; ++k) {
-    double const one = watch([&] {
+  double first_ms = 1e9, again_ms = 1e9;
+
+  explicit contestant(Space const& space, float radius = -1) : radius{radius}, detector{space} {}
+
+  /// Build and query, and the mean of four more; returns the seconds of all.
+  double race(Space const& space, collide::mesh_view<float> mesh, collide::sphere_view<float> spheres) {
+    watch_of<Space> watch(space);
+    double const first = watch([&] {
       radius < 0 ? detector.build(mesh) : detector.build(mesh, radius);
       detector.query(spheres, found);
     });
-    double const two = watch([&] { detector.query(spheres, found); });
-    spent += one + two;
-    if (k == 0 && spent < 1) continue;
-    first.push_back(one);
-    again.push_back(two);
-    for (int more = 0; more < 3; ++more) again.push_back(watch([&] { detector.query(spheres, found); }));
+    double again = 0;
+    for (int k = 0; k < 4; ++k) again += watch([&] { detector.query(spheres, found); });
+    first_ms = std::min(first_ms, 1e3 * first);
+    again_ms = std::min(again_ms, 1e3 * again / 4);
+    return first + again;
   }
-  pairs = found.total();
-  return {1e3 * bench::median(first), 1e3 * bench::median(again), detector.cell_width()};
-}
+};
 
 template <class Space>
 void run(Space const& space, std::size_t scale, int begin, int end) {
@@ -234,24 +231,34 @@ void run(Space const& space, std::size_t scale, int begin, int end) {
     auto const spheres =
         collide::upload(space, f.ratio > 1 ? collide::spheres_xyz(s.centres.data(), s.radii.size(), s.radii.data())
                                            : collide::spheres_xyz(s.centres.data(), s.radii.size(), s.radii[0]));
-    std::uint64_t pairs[4];
-    int const runs = Space::host_accessible ? 2 : 6;
-    taken const by_bucket = time<collide::bucket>(space, mesh.view(), spheres.view(), runs, pairs[0]);
-    taken const by_bvh = time<collide::bvh>(space, mesh.view(), spheres.view(), runs, pairs[1]);
-    taken const by_automatic = time<collide::automatic>(space, mesh.view(), spheres.view(), runs, pairs[2]);
     float const largest = *std::max_element(s.radii.begin(), s.radii.end());
-    taken const given = time<collide::bucket>(space, mesh.view(), spheres.view(), runs, pairs[3], largest);
-    bool const same = pairs[0] == pairs[1] && pairs[0] == pairs[2] && pairs[0] == pairs[3];
+    contestant<collide::bucket, Space> by_bucket(space), given(space, largest);
+    contestant<collide::bvh, Space> by_bvh(space);
+    contestant<collide::automatic, Space> by_automatic(space);
+    double spent = 0;
+    auto const one = [&](auto& c) { spent += c.race(space, mesh.view(), spheres.view()); };
+    for (int k = 0; k < 4 || (k < 200 && spent < 1); ++k) {  // the first allocates
+      for (int const which : k % 2 == 0 ? std::array{0, 1, 2, 3} : std::array{1, 3, 2, 0}) {
+        if (which == 0) one(by_bucket);
+        if (which == 1) one(by_bvh);
+        if (which == 2) one(by_automatic);
+        if (which == 3) one(given);
+      }
+    }
+    std::uint64_t const pairs = by_bucket.found.total();
+    bool const same =
+        pairs == by_bvh.found.total() && pairs == by_automatic.found.total() && pairs == given.found.total();
     std::printf(
         "{\"family\": %d, \"triangles\": \"%s\", \"spheres\": \"%s\", \"triangle_count\": %zu, \"sphere_count\": %zu, "
         "\"ratio\": %.3g, \"radius\": %.3g, \"pairs\": %llu, \"same\": %s, \"bucket\": [%.4g, %.4g], "
         "\"bucket_given\": [%.4g, %.4g], \"bvh\": [%.4g, %.4g], \"automatic\": [%.4g, %.4g], \"over_best\": [%.3f, "
         "%.3f], \"cells\": [%.3g, %.3g]}\n",
         i, f.triangles, f.spheres, mesh.view().size(), spheres.view().size(), f.ratio, f.radius,
-        static_cast<unsigned long long>(pairs[0]), same ? "true" : "false", by_bucket.first_ms, by_bucket.again_ms,
+        static_cast<unsigned long long>(pairs), same ? "true" : "false", by_bucket.first_ms, by_bucket.again_ms,
         given.first_ms, given.again_ms, by_bvh.first_ms, by_bvh.again_ms, by_automatic.first_ms, by_automatic.again_ms,
         by_automatic.first_ms / std::min(by_bucket.first_ms, by_bvh.first_ms),
-        by_automatic.again_ms / std::min(by_bucket.again_ms, by_bvh.again_ms), by_bucket.cell, by_automatic.cell);
+        by_automatic.again_ms / std::min(by_bucket.again_ms, by_bvh.again_ms), by_bucket.detector.cell_width(),
+        by_automatic.detector.cell_width());
     std::fflush(stdout);
   }
 }

@@ -145,6 +145,7 @@ struct automatic {
 
     template <class Space, class Spheres>
     strategy choose(Space& space, automatic const& options, Spheres const& spheres) {
+      is_planned_ = false;
       bool const wants_index =
           has_grid_ || has_tree_ || (best_without_tree(options) == strategy::grid && wants_grid<Space>(spheres.size()));
       if (!wants_index) return strategy::all_pairs;
@@ -169,30 +170,46 @@ struct automatic {
                       [[maybe_unused]] Spheres const& spheres) {
       if constexpr (bvh_tuning<Space>::divides_by_area) {
         if (options.grid.memory_budget != 0 || (is_sampled_ && !is_slender_)) return false;
-        if (!choices_.is_due(spheres.size())) return choices_.for_tree;
-        detail::sampled_triangles<S> const sample(mesh_);
-        is_sampled_ = true;
-        is_slender_ = sample.are_slender();
-        if (!is_slender_) return false;
-        detail::planned_candidates<S> candidates;
-        if constexpr (std::is_same<Spheres, sphere_view<S>>::value) {
-          build_grid(space, options);
-          grid_.plan(space, options.grid, spheres);
-          auto const made = grid_.mesh_lookup();
-          candidates = {made.grids, made.grid_count};
+        if (choices_.is_due(spheres.size())) {
+          detail::sampled_triangles<S> const sample(mesh_);
+          is_sampled_ = true;
+          is_slender_ = sample.are_slender();
+          if (!is_slender_) return false;
+          estimate_tree(space, options, sample, spheres);
         }
-        double const pieces = pieces_of(sample, spheres);
-        double const build =
-            has_tree_ ? 0 : slender_costs.per_built_piece_ns * pieces * static_cast<double>(mesh_.size());
-        auto const saved_by = [&](std::size_t max_count) {
-          return saved_by_tree(slender_costs, sample, pieces, spheres, max_count, candidates);
-        };
-        double saved = saved_by(8);  // mostly these tell
-        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by(128);
-        choices_.for_tree = pays(build, saved, spent_on_boxes_, choices_.next - choices_.queries);
-        return choices_.for_tree;
+        return choices_.saved > 0 && pays(has_tree_ ? 0 : choices_.build, choices_.saved, spent_on_boxes_);
       } else {
         return false;
+      }
+    }
+
+    /// Estimates what a tree takes to build, and what it saves of this query.
+    template <class Space, class Spheres>
+    void estimate_tree(Space& space, automatic const& options, detail::sampled_triangles<S> const& sample,
+                       Spheres const& spheres) {
+      double const around = sample.reached(spheres, 8, 1).boxes;
+      choices_.saved = 0;
+      if (slender_costs.per_box_ns * around <= slender_costs.per_sphere_ns) return;  // it does not save anything
+      detail::planned_candidates<S> candidates;
+      if constexpr (std::is_same<Spheres, sphere_view<S>>::value) {
+        build_grid(space, options);
+        grid_.plan(space, options.grid, spheres);
+        is_planned_ = true;
+        auto const made = grid_.mesh_lookup();
+        candidates = {made.grids, made.grid_count};
+      }
+      double const pieces = pieces_for(around);
+      choices_.build = slender_costs.per_built_piece_ns * pieces * static_cast<double>(mesh_.size());
+      constexpr double per_sample_ns = 300;
+      auto const n = static_cast<double>(spheres.size());
+      for (std::size_t count = 8;;) {  // mostly these tell
+        auto const mean = sample.reached(spheres, count, pieces, candidates);
+        choices_.saved = n * saved_by_tree(slender_costs, mean);
+        // more, up to a thirtieth of the query
+        double const affords = n * (slender_costs.per_box_ns * mean.candidates) / (30 * per_sample_ns);
+        bool const tells = choices_.build > 4 * (choices_.saved + spent_on_boxes_);
+        if (count > 8 || tells || affords < 16) break;
+        count = static_cast<std::size_t>(detail::min(affords, 128.0));
       }
     }
 
@@ -206,48 +223,40 @@ struct automatic {
         if (!sample.are_slender()) return false;
         S const radius = spheres.one_radius() ? spheres.common_radius() : spheres[0].radius;
         detail::middles_as_spheres<S> const middles{mesh_, radius};
-        return saved_by_tree(slender_costs_of_steps, sample, pieces_of(sample, middles), middles, 128) > 0;
+        return saved_by_tree(slender_costs_of_steps,
+                             sample.reached(middles, 128, pieces_for(sample.reached(middles, 8, 1).boxes))) > 0;
       } else {
         return false;
       }
     }
 
-    /// Into how many pieces a tree cuts triangles, about, as triangle_pieces.hpp has it.
-    template <class Spheres>
-    static double pieces_of(detail::sampled_triangles<S> const& sample, Spheres const& spheres) {
-      double const around = sample.reached(spheres, 8, 1).boxes;
-      return detail::min(detail::max(std::sqrt(around / 2), 2.0), 16.0);
+    /// Into how many pieces a tree cuts triangles, of whose boxes so many are around a place, about, as
+    /// triangle_pieces.hpp has it.
+    static double pieces_for(double around) { return detail::min(detail::max(std::sqrt(around / 2), 2.0), 16.0); }
+
+    /// Nanoseconds by which a tree is faster than a grid, for each sphere.
+    static double saved_by_tree(slender_cost_model const& c, detail::reached_by_sphere const& mean) {
+      return c.per_box_ns * mean.candidates - c.per_sphere_ns - c.per_touched_ns * mean.triangles -
+             c.per_piece_ns * (mean.pieces - mean.triangles);
     }
 
-    /// Nanoseconds by which queries by a tree are faster than by a grid, from at most so many spheres.
-    template <class Spheres>
-    static double saved_by_tree(slender_cost_model const& c, detail::sampled_triangles<S> const& sample, double pieces,
-                                Spheres const& spheres, std::size_t max_count,
-                                detail::planned_candidates<S> const& candidates = {}) {
-      detail::reached_by_sphere const mean = sample.reached(spheres, max_count, pieces, candidates);
-      return static_cast<double>(spheres.size()) *
-             (c.per_box_ns * mean.candidates - c.per_sphere_ns - c.per_touched_ns * mean.triangles -
-              c.per_piece_ns * (mean.pieces - mean.triangles));
-    }
-
-    /// True if what is saved pays for a build, with what queries have lost so far; else this one adds to that, and
-    /// those like it that are not asked.
-    static bool pays(double build, double saved, double& lost, std::size_t queries = 1) {
+    /// True if what is saved pays for a build, with what queries have lost so far; else this one adds to that.
+    static bool pays(double build, double saved, double& lost) {
       if (build < saved + lost) return true;
-      lost += saved > 0 ? saved * static_cast<double>(queries) : 0;
+      lost += saved > 0 ? saved : 0;
       return false;
     }
 
-    /// When it is asked again whether a tree is faster, as that takes time too: by the first queries, then by every
-    /// sixteenth, and by one of twice or half as many spheres.
+    /// The last estimate of what a tree takes and saves, in nanoseconds. That takes time too, so it is made again by
+    /// every sixteenth query, and by one of twice or half as many spheres.
     struct tree_choices {
       std::size_t queries = 0, next = 0, spheres = 0;  ///< queries so far, and the next that asks
-      bool for_tree = false;
+      double build = 0, saved = 0;
 
       bool is_due(std::size_t n) {
         bool const is_alike = n / 2 <= spheres && spheres / 2 <= n;
         if (++queries < next && is_alike) return false;
-        next = queries + detail::min<std::size_t>(queries, 16);
+        next = queries + 16;
         spheres = n;
         return true;
       }
@@ -263,6 +272,9 @@ struct automatic {
         }
       } else if (strategy_ == strategy::grid) {
         build_grid(space, options);
+        if constexpr (std::is_same<RadiusOrSpheres, sphere_view<S>>::value) {
+          if (is_planned_) return grid_.fill(space, what);
+        }
         grid_.prepare(space, options.grid, what);
       } else {
         if (!has_bounds_) bounds_.build(space, all_pairs(), mesh_);
@@ -283,6 +295,7 @@ struct automatic {
     bool has_grid_ = false, has_bounds_ = false, has_tree_ = false;
     bool is_given_ = false;                         ///< made for a radius, or for steps, until the next build
     bool is_sampled_ = false, is_slender_ = false;  ///< the mesh
+    bool is_planned_ = false;                       ///< the grid, for the spheres of this query
     strategy strategy_ = strategy::all_pairs;       ///< of this query
     tree_choices choices_;
     double spent_ = 0;           ///< nanoseconds that a grid would have saved so far

@@ -123,6 +123,16 @@ class bucket::index {
     fill(space, spheres);
   }
 
+  /// Sorts the spheres into the cells, or enters the triangles, as planned for them last.
+  template <class Space, class Spheres>
+  void fill(Space& space, [[maybe_unused]] Spheres const& spheres) {
+    ++queries_;
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (sorts_spheres()) return bins_.sort(space, spheres);
+    }
+    cells_.fill(space);
+  }
+
   /// Makes the grids that spheres which move need, and enters the triangles or sorts the spheres.
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
@@ -257,16 +267,6 @@ class bucket::index {
 
   /// True if triangles look for spheres that are sorted into the cells.
   bool sorts_spheres() const { return order_ == detail::query_order::triangle_major; }
-
-  /// Sorts the spheres into the cells, or enters the triangles, as planned.
-  template <class Space, class Spheres>
-  void fill(Space& space, [[maybe_unused]] Spheres const& spheres) {
-    ++queries_;
-    if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (sorts_spheres()) return bins_.sort(space, spheres);
-    }
-    cells_.fill(space);
-  }
 
   mesh_view<S> mesh_;
   std::size_t queries_ = 0;                                        ///< since the build

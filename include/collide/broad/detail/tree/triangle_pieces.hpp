@@ -279,6 +279,7 @@ class sampled_triangles {
       if (!is_finite(t)) continue;
       wasted += shape.wasted();
       surface += shape.half_surface;
+      boxes_[count_] = triangle_aabb_of(t);
       triangles_[count_++] = t;
     }
     // more than that is cut into pieces
@@ -298,7 +299,7 @@ class sampled_triangles {
       sphere<S> const s = swept_bounding_sphere(spheres[spheres.size() / n * i + spheres.size() % n * i / n]);
       if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(s.radius)) continue;
       for (int k = 0; k < count_; ++k) {
-        triangle_aabb<S> const box = triangle_aabb_of(triangles_[k]);
+        triangle_aabb<S> const& box = boxes_[k];
         if (!box.overlaps(s.centre, s.radius)) continue;
         S const square = distance_squared(triangles_[k], s);
         S const x = box.upper[0] - box.lower[0], y = box.upper[1] - box.lower[1], z = box.upper[2] - box.lower[2];
@@ -324,6 +325,7 @@ class sampled_triangles {
   }
 
   triangle<S> triangles_[capacity];
+  triangle_aabb<S> boxes_[capacity];
   std::size_t all_;  ///< of the mesh
   int count_;        ///< that are finite
   bool are_slender_;
