@@ -154,18 +154,31 @@ class host {
   }
 #endif
 
-  /// Calls work(first, last) for ranges that cover 0 .. n, from all threads; the first exception is passed on. A thread
-  /// takes some `shares` ranges, as it gets free: enough that none waits long for the others, and few enough that
-  /// memory is read in long stretches.
+  /// A loop's body, whatever its type: work(first, last).
+  struct ranged_work {
+    void const* of;
+    void (*call)(void const* of, std::size_t first, std::size_t last);
+  };
+
+  /// Calls work(first, last) for ranges that cover 0 .. n, from all threads; the first exception is passed on. How
+  /// ranges are shared out is compiled once for all loops.
   template <class Work>
-  void run(std::size_t n, Work const& whole) const {
+  void run(std::size_t n, Work const& work) const {
+    share_out(n, {&work, [](void const* of, std::size_t first, std::size_t last) {
+                    (*static_cast<Work const*>(of))(first, last);
+                  }});
+  }
+
+  /// The same. A thread takes some `shares` ranges, as it gets free: enough that none waits long for the others, and
+  /// few enough that memory is read in long stretches.
+  void share_out(std::size_t n, ranged_work const& whole) const {
     std::atomic<bool> failed{false};
     std::thread::id const caller = look_ != nullptr ? std::this_thread::get_id() : std::thread::id();
     auto const work = [&](std::size_t first, std::size_t last) {
       std::size_t const part = look_ != nullptr ? 1 : last - first;
       for (; first < last && !failed; first += part) {
         if (look_ != nullptr && std::this_thread::get_id() == caller) look_();
-        whole(first, std::min(last, first + part));
+        whole.call(whole.of, first, std::min(last, first + part));
       }
     };
 #if defined(_OPENMP)

@@ -36,16 +36,34 @@ def device_of(array, name):
 MOST_LISTED = 1000  # numbers of a list: a larger one is slow, and better an array
 
 
+def numbers(name, values, expected="numbers", dtype="float64"):
+    """An array of numpy, of numbers as it takes them; its own errors have no name of the argument."""
+    try:
+        return numpy.asarray(values, dtype)
+    except Exception:  # noqa: BLE001
+        raise TypeError(f"{name}: expected {expected}, got {shown(values)}") from None
+
+
 def of_list(values, name, dtype):
     """Lists and tuples as an array of numpy, if they are short; everything else as it is."""
     if not isinstance(values, (list, tuple)):
         return values
-    try:
-        array = numpy.array(values, dtype)
-    except Exception:  # noqa: BLE001: numpy's own errors have no name of the argument
-        raise TypeError(f"{name}: expected an array, or a list of numbers such as numpy takes, got {shown(values)}") from None
+    array = numbers(name, values, "an array, or a list of numbers such as numpy takes", dtype)
     refuse(array.size >= MOST_LISTED, name, f"is a list of {array.size} numbers, which is slow: make an array of it, such as numpy's")
     return array
+
+
+def table(name, values, rows, width):
+    """(rows, width) float64 of numbers, or of those of one row for all; ``rows`` is a word where there may be any number."""
+    expected, count = f"({rows}, {width})", None if isinstance(rows, str) else rows
+    found = numbers(name, values, f"numbers of shape {expected}")
+    if found.shape in ((width,), () if width == 1 else (width,)):
+        found = numpy.broadcast_to(found, (1 if count is None else count, width))
+    if width == 1 and found.ndim == 1:
+        found = found[:, None]
+    wrong = found.ndim != 2 or found.shape[1] != width or count not in (None, len(found))
+    refuse(wrong, name, f"has shape {found.shape}, expected {expected}")
+    return found
 
 
 def arrays_of(mesh):

@@ -5,7 +5,8 @@ from typing import Any
 import numpy
 
 from . import _host
-from ._errors import refuse, whole
+from ._arrays import table
+from ._errors import whole
 
 
 class ClumpShape:
@@ -19,7 +20,7 @@ class ClumpShape:
     """
 
     def __init__(self, centres: Any, radii: Any) -> None:
-        x = table("centres", centres, None, 3)
+        x = table("centres", centres, "n", 3)
         r = table("radii", radii, len(x), 1)
         self._count = len(x)
         found = numpy.array(_host.shape_of_clump(numpy.hstack([x, r]).ravel().tolist()))
@@ -36,18 +37,3 @@ def random_rotations(number: int, seed: int = 0) -> numpy.ndarray:
     found = _host.random_rotations(whole("number", number), whole("seed", seed, 0, 2**24 - 1))
     return numpy.array(found).reshape(-1, 4)
 
-
-def table(name, values, rows, width):
-    """(rows, width) float64 of numbers, or of those of one row for all; without ``rows`` as many as there are."""
-    try:
-        found = numpy.asarray(values, float)
-    except Exception:  # noqa: BLE001: numpy's own errors have no name of the argument
-        raise TypeError(f"{name}: expected numbers") from None
-    if rows is not None and found.shape in ((width,), () if width == 1 else (width,)):
-        found = numpy.broadcast_to(found, (rows, width))
-    if width == 1 and found.ndim == 1:
-        found = found[:, None]
-    wrong = found.ndim != 2 or found.shape[1] != width or (rows is not None and len(found) != rows)
-    wanted = f"({'n' if rows is None else rows}, {width})"
-    refuse(wrong, name, f"has shape {found.shape}, expected {wanted}")
-    return found

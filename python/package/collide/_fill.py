@@ -1,14 +1,15 @@
 """Regions full of spheres."""
 
-from typing import Any, NamedTuple, Optional, Tuple, Union
+from typing import Any, NamedTuple
 
 import numpy
 
 from . import _host
+from ._arrays import numbers
 from ._errors import choice, real, refuse, whole
 
 _NUMBERS = {"uniform": 2, "normal": 4, "lognormal": 4}
-Sizes = Union[float, Tuple[Any, ...]]
+Sizes = float | tuple[Any, ...]
 
 
 class Filling(NamedTuple):
@@ -19,7 +20,7 @@ class Filling(NamedTuple):
     fraction: float  #: of the region's volume that they take
 
 
-def fill(region: Any, sizes: Sizes, fraction: Optional[float] = None, *, number: Optional[int] = None, seed: int = 0) -> Filling:
+def fill(region: Any, sizes: Sizes, fraction: float | None = None, *, number: int | None = None, seed: int = 0) -> Filling:
     """Spheres that do not overlap, in a region: up to a ``fraction`` of its volume, or a ``number`` of them. They drop, and
     roll until three others hold them.
 
@@ -43,10 +44,7 @@ def fill(region: Any, sizes: Sizes, fraction: Optional[float] = None, *, number:
 
 
 def _flat(name, values):
-    try:
-        return numpy.asarray(values, float).ravel().tolist()
-    except Exception:  # noqa: BLE001: numpy's own errors have no name of the argument
-        raise TypeError(f"{name}: expected numbers") from None
+    return numbers(name, values).ravel().tolist()
 
 
 def _distribution(sizes):
@@ -66,9 +64,7 @@ def _region(region):
     parts = [_flat("region", part) for part in region] if of_box else []
     if [len(part) for part in parts] in ([3, 3], [3, 3, 1]):
         return sum(parts, [])
-    try:
-        shape = numpy.shape(region)
-    except Exception:  # noqa: BLE001
-        shape = ()
-    refuse(len(shape) != 3 or shape[1:] != (3, 3), "region", "expected (lower, upper), (end, other end, radius), or (m, 3, 3) numbers")
-    return _flat("region", region)
+    expected = "(lower, upper), (end, other end, radius), or (m, 3, 3) numbers"
+    corners = numbers("region", region, expected)
+    refuse(corners.ndim != 3 or corners.shape[1:] != (3, 3), "region", f"expected {expected}")
+    return corners.ravel().tolist()

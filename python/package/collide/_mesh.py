@@ -1,21 +1,22 @@
 """Meshes, and what their queries find."""
 
+import functools
 import math
 import os
 import re
 import warnings
-from typing import Any, Iterable, Iterator, Literal, NamedTuple, Optional, Tuple, Union, overload
+from typing import Any, Iterable, Iterator, Literal, NamedTuple, get_args, overload
 
 import numpy
 
-from ._arrays import CUDA, arrays_of, device_of, library_of, module_for, of_list, stream_of
+from ._arrays import CUDA, arrays_of, device_of, library_of, module_for, of_list, stream_of, table
 from ._errors import choice, real, refuse, whole
 
 Array = Any  #: an array of numpy, torch, cupy, jax or warp, or anything with __dlpack__
 Precision = Literal["exact", "double", "single"]
 Order = Literal["unspecified", "canonical"]
 Poses = Any  #: (bodies, 7) numbers of numpy or in lists: of each a position, and a unit quaternion w, x, y, z
-PRECISIONS = ("exact", "double", "single")
+PRECISIONS, ORDERS = get_args(Precision), get_args(Order)
 
 
 class _field:  # noqa: N801: it is used like property
@@ -203,10 +204,8 @@ class Mesh:
     there is one radius or there are at most 262,144 triangles.
     """
 
-    def __init__(
-        self, vertices: Array, triangles: Optional[Array] = None, *, bodies: Iterable[Tuple[int, int]] = (),
-        validate: bool = True, threads: int = 0,
-    ) -> None:
+    def __init__(self, vertices: Array, triangles: Array | None = None, *, bodies: Iterable[tuple[int, int]] = (),
+                 validate: bool = True, threads: int = 0) -> None:
         vertices, triangles = of_list(vertices, "vertices", "float64"), of_list(triangles, "triangles", "int64")
         self._device = device_of(vertices, "vertices")
         self._library = library_of(vertices, self._device)
@@ -234,7 +233,7 @@ class Mesh:
         triangles = self._mesh.triangles(stream, self._library.is_numpy)
         if triangles is not None:
             triangles = self._library.array(triangles, stream)
-        return _mesh_of, (self._vertices, triangles, self._threads, self._bodies)
+        return functools.partial(Mesh, bodies=self._bodies, threads=self._threads), (self._vertices, triangles)
 
     def __len__(self) -> int:
         """How many triangles there are."""
@@ -244,7 +243,7 @@ class Mesh:
         place = "host" if self._device[0] != CUDA else f"GPU {self._device[1]}"
         return f"<collide.Mesh: {len(self)} triangles, {'float64' if self._is_wide else 'float32'}, {place}>"
 
-    def update(self, vertices: Array, triangles: Optional[Array] = None, *, validate: bool = True) -> None:
+    def update(self, vertices: Array, triangles: Array | None = None, *, validate: bool = True) -> None:
         """The mesh has moved: takes other vertices, or the same array with other contents, and triangles if they have
         changed, too, which are copied and checked as by the constructor. What depends on them is prepared again by the
         next query, and by simulations in their next steps; without triangles nothing is allocated. Raises as the
@@ -279,44 +278,34 @@ class Mesh:
         `winding_number` above 1/2 is the union. O(m log m + pairs). Raises `Error` on a GPU."""
         return self._mesh.check(self._stream(), "intersections", 0)
 
-    def count(
-        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
-        precision: Precision = "exact", poses: Optional[Poses] = None
-    ) -> int:
+    def count(self, centres: Array, radius: float | Array, *, displacements: Array | None = None,
+              precision: Precision = "exact", poses: Poses | None = None) -> int:
         """How many pairs of a sphere and a triangle touch. Arguments as for `query`."""
-        return self._ask(self._mesh.query, int, None, "count", centres, radius, displacements, precision, poses=poses)
+        return self._query(int, "count", centres, radius, displacements, precision, poses=poses)
 
-    def any(
-        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
-        precision: Precision = "exact", poses: Optional[Poses] = None, out: Optional[Array] = None
-    ) -> Array:
+    def any(self, centres: Array, radius: float | Array, *, displacements: Array | None = None,
+            precision: Precision = "exact", poses: Poses | None = None, out: Array | None = None) -> Array:
         """(n,) bool: whether each sphere touches anything. Arguments as for `query`.
 
         out  (n,) uint8 or bool: where flags go. On a GPU such a call allocates nothing and does not
              wait, once a first one has been made, with one radius or up to 262,144 triangles: it can be captured in
              a CUDA graph.
         """
-        return self._ask(self._mesh.query, bool, out, "any", centres, radius, displacements, precision, poses=poses)
+        return self._query(bool, "any", centres, radius, displacements, precision, poses=poses, out=out)
 
     @overload
-    def query(
-        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
-        precision: Precision = "exact", order: Order = "unspecified", output: Literal["pairs"] = "pairs",
-        capacity: Optional[int] = None, poses: Optional[Poses] = None, out: Optional[Array] = None
-    ) -> Pairs: ...
+    def query(self, centres: Array, radius: float | Array, *, displacements: Array | None = None,
+              precision: Precision = "exact", order: Order = "unspecified", output: Literal["pairs"] = "pairs",
+              capacity: int | None = None, poses: Poses | None = None, out: Array | None = None) -> Pairs: ...
 
     @overload
-    def query(
-        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
-        precision: Precision = "exact", order: Order = "unspecified", output: Literal["csr"],
-        poses: Optional[Poses] = None
-    ) -> Csr: ...
+    def query(self, centres: Array, radius: float | Array, *, displacements: Array | None = None,
+              precision: Precision = "exact", order: Order = "unspecified", output: Literal["csr"],
+              poses: Poses | None = None) -> Csr: ...
 
-    def query(
-        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
-        precision: Precision = "exact", order: Order = "unspecified", output: Literal["pairs", "csr"] = "pairs",
-        capacity: Optional[int] = None, poses: Optional[Poses] = None, out: Optional[Array] = None
-    ) -> Union[Pairs, Csr]:
+    def query(self, centres: Array, radius: float | Array, *, displacements: Array | None = None,
+              precision: Precision = "exact", order: Order = "unspecified", output: Literal["pairs", "csr"] = "pairs",
+              capacity: int | None = None, poses: Poses | None = None, out: Array | None = None) -> Pairs | Csr:
         """All pairs of a sphere and a triangle that touch, each exactly once.
 
         centres        (n, 3), of the dtype of the vertices and on the same device
@@ -338,14 +327,12 @@ class Mesh:
         if choice("output", output, ("pairs", "csr")) == "csr":
             refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
             refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
-        kind, asked = Csr if output == "csr" else Pairs, (output, centres, radius, displacements, precision)
-        return self._ask(self._mesh.query, kind, out, *asked, order=order, capacity=capacity, poses=poses)
+        kind = Csr if output == "csr" else Pairs
+        return self._query(kind, output, centres, radius, displacements, precision, order, capacity, poses, out)
 
-    def contacts(
-        self, centres: Array, radius: Union[float, Array], *, closest: bool = False,
-        displacements: Optional[Array] = None, precision: Precision = "exact", order: Order = "unspecified",
-        capacity: Optional[int] = None, poses: Optional[Poses] = None, out: Optional[Array] = None
-    ) -> Contacts:
+    def contacts(self, centres: Array, radius: float | Array, *, closest: bool = False,
+                 displacements: Array | None = None, precision: Precision = "exact", order: Order = "unspecified",
+                 capacity: int | None = None, poses: Poses | None = None, out: Array | None = None) -> Contacts:
         """The contact of every pair that touches: closest point, normal, distance, depth, feature. With displacements,
         at the time of impact.
 
@@ -357,14 +344,12 @@ class Mesh:
         """
         refuse(closest and out is not None, "out", "of the closest contacts is not taken")
         refuse(closest and capacity is not None, "capacity", "there is a contact for each sphere")
-        asked = "closest" if closest else "contacts", centres, radius, displacements, precision
-        return self._ask(self._mesh.query, Contacts, out, *asked, order=order, capacity=capacity, poses=poses)
+        what = "closest" if closest else "contacts"
+        return self._query(Contacts, what, centres, radius, displacements, precision, order, capacity, poses, out)
 
-    def impacts(
-        self, centres: Array, displacements: Array, radius: Union[float, Array], *, first: bool = False,
-        order: Order = "unspecified", capacity: Optional[int] = None, poses: Optional[Poses] = None,
-        out: Optional[Array] = None
-    ) -> Impacts:
+    def impacts(self, centres: Array, displacements: Array, radius: float | Array, *, first: bool = False,
+                order: Order = "unspecified", capacity: int | None = None, poses: Poses | None = None,
+                out: Array | None = None) -> Impacts:
         """Moving spheres: every pair that touches on the way from ``centres`` to ``centres + displacements``, with the
         time of impact and the contact then.
 
@@ -378,13 +363,11 @@ class Mesh:
         refuse(displacements is None, "displacements", "expected an array of shape (n, 3)")
         refuse(first and out is not None, "out", "of the first impacts is not taken")
         refuse(first and capacity is not None, "capacity", "there is an impact for each sphere")
-        asked = "earliest" if first else "impacts", centres, radius, displacements, "exact"
-        return self._ask(self._mesh.query, Impacts, out, *asked, order=order, capacity=capacity, poses=poses)
+        what = "earliest" if first else "impacts"
+        return self._query(Impacts, what, centres, radius, displacements, "exact", order, capacity, poses, out)
 
-    def nearest(
-        self, points: Array, *, max_distance: float = math.inf, poses: Optional[Poses] = None,
-        out: Optional[Array] = None
-    ) -> Nearest:
+    def nearest(self, points: Array, *, max_distance: float = math.inf, poses: Poses | None = None,
+                out: Array | None = None) -> Nearest:
         """The nearest triangle of each point, and the nearest point of it.
 
         points        (n, 3), of the dtype of the vertices and on the same device. One that is not finite has no triangle.
@@ -397,12 +380,10 @@ class Mesh:
         arguments that do not fit, `Error` if the library or CUDA fails. It does not wait on a GPU. The first call prepares a
         tree, O(m log m) for m triangles; O(log m) for a point near the mesh.
         """
-        return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, real("max_distance", max_distance), poses=poses)
+        return self._search(Nearest, "nearest", points, 1, max_distance, poses, out)
 
-    def k_nearest(
-        self, points: Array, k: int, *, max_distance: float = math.inf, poses: Optional[Poses] = None,
-        out: Optional[Array] = None
-    ) -> Nearest:
+    def k_nearest(self, points: Array, k: int, *, max_distance: float = math.inf, poses: Poses | None = None,
+                  out: Array | None = None) -> Nearest:
         """The k nearest triangles of each point, by rising distance: ``distance`` has the shape (n, k), ``point`` (n, k,
         3). Where fewer are in reach, the last ones of a row are none.
 
@@ -411,13 +392,10 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        asked = points, whole("k", k, 1, 32), real("max_distance", max_distance)
-        return self._ask(self._mesh.search, Nearest, out, "k_nearest", *asked, poses=poses)
+        return self._search(Nearest, "k_nearest", points, whole("k", k, 1, 32), max_distance, poses, out)
 
-    def distance(
-        self, points: Array, *, signed: bool = False, max_distance: float = math.inf, poses: Optional[Poses] = None,
-        out: Optional[Array] = None
-    ) -> Array:
+    def distance(self, points: Array, *, signed: bool = False, max_distance: float = math.inf,
+                 poses: Poses | None = None, out: Array | None = None) -> Array:
         """(n,) of the vertices' dtype: the distances of `nearest`, or with ``signed`` of `signed_distance`, without the
         memory of all else that these find.
 
@@ -427,10 +405,9 @@ class Mesh:
         """
         if signed:
             self._look_for_holes()
-        what = "sides" if signed else "distance"
-        return self._ask(self._mesh.search, float, out, what, points, 1, real("max_distance", max_distance), poses=poses)
+        return self._search(float, "sides" if signed else "distance", points, 1, max_distance, poses, out)
 
-    def winding_number(self, points: Array, *, beta: float = 3, out: Optional[Array] = None) -> Winding:
+    def winding_number(self, points: Array, *, beta: float = 3, out: Array | None = None) -> Winding:
         """How often the mesh winds around each point: `Winding`, whose ``value`` is above 1/2 inside. For meshes with
         holes, triangle soups, and closed parts that overlap, of which `contains` makes no sense; normals must point
         outwards. Barill et al., 2018.
@@ -441,13 +418,12 @@ class Mesh:
 
         Errors as for `nearest`. O(log m) a point.
         """
-        refuse(not real("beta", beta) >= 2, "beta", "is below 2")
-        return self._ask(self._mesh.search, Winding, out, "winding", points, float(beta), math.inf)
+        beta = real("beta", beta)
+        refuse(not beta >= 2, "beta", "is below 2")
+        return self._search(Winding, "winding", points, beta, math.inf, None, out)
 
-    def signed_distance(
-        self, points: Array, *, max_distance: float = math.inf, poses: Optional[Poses] = None,
-        out: Optional[Array] = None
-    ) -> SignedDistance:
+    def signed_distance(self, points: Array, *, max_distance: float = math.inf, poses: Poses | None = None,
+                        out: Array | None = None) -> SignedDistance:
         """How far each point is from the surface of a closed mesh: ``distance`` is negative inside, 0 on the surface. It
         is what `nearest` finds, with the side that `contains` finds; each says what it needs. Farther away than
         ``max_distance`` it is infinite, with the sign. A mesh of the host that is not closed gives a warning, once.
@@ -457,10 +433,9 @@ class Mesh:
         Other arguments, errors and costs as for `nearest`.
         """
         self._look_for_holes()
-        asked = "signed_distance", points, 1, real("max_distance", max_distance)
-        return self._ask(self._mesh.search, SignedDistance, out, *asked, poses=poses)
+        return self._search(SignedDistance, "signed_distance", points, 1, max_distance, poses, out)
 
-    def contains(self, points: Array, *, poses: Optional[Poses] = None, out: Optional[Array] = None) -> Array:
+    def contains(self, points: Array, *, poses: Poses | None = None, out: Array | None = None) -> Array:
         """(n,) bool: whether each point is inside of a closed mesh or on its surface. Exact, however triangles are
         oriented: a ray from the point along +z crosses the mesh an odd number of times. Where the mesh is not closed
         the answer depends on that ray, and there is a warning, once. A point that is not finite is outside. O(triangles above or below the point).
@@ -471,7 +446,7 @@ class Mesh:
         Errors as for `nearest`.
         """
         self._look_for_holes()
-        return self._ask(self._mesh.search, bool, out, "contains", points, 1, math.inf, poses=poses)
+        return self._search(bool, "contains", points, 1, math.inf, poses, out)
 
     def _look_for_holes(self):
         """Warns of a mesh that has no inside, once for its triangles."""
@@ -492,23 +467,30 @@ class Mesh:
     def _dtype(self):
         return "float64" if self._is_wide else "float32"
 
-    def _ask(self, function, kind, out, what, centres, *asked, order="unspecified", capacity=None, poses=None):
-        """What a function of the compiled mesh finds, as a ``kind``; bool stands for flags, float for numbers. It works on
-        the stream of the library that the centres, or points, are of."""
-        if isinstance(centres, (list, tuple)):
-            centres = of_list(centres, "centres" if len(asked) == 3 else "points", self._dtype)
-        if len(asked) == 3:  # of spheres
-            choice("precision", asked[2], PRECISIONS)
-            if isinstance(asked[0], (list, tuple)) or isinstance(asked[1], (list, tuple)):
-                names = "radius", "displacements", "precision"
-                asked = [of_list(one, name, self._dtype) for name, one in zip(names, asked)]
-        library = library_of(centres, self._device)
-        stream = stream_of(library, self._device)
+    def _query(self, kind, what, centres, radius, displacements, precision, order="unspecified", capacity=None, poses=None,
+               out=None):
+        """What spheres touch."""
+        choice("precision", precision, PRECISIONS)
+        is_sorted = choice("order", order, ORDERS) == "canonical"
         if capacity is not None:
             capacity = whole("capacity", capacity, 0, 2**63 - 1)
-        is_sorted = choice("order", order, ("unspecified", "canonical")) == "canonical"
+        given = {"centres": centres, "radius": radius, "displacements": displacements}
+        centres, *asked = (of_list(array, name, self._dtype) for name, array in given.items())
+        return self._ask(self._mesh.query, kind, what, centres, (*asked, precision), poses, out, is_sorted, capacity)
+
+    def _search(self, kind, what, points, number, max_distance, poses, out):
+        """What is near points; ``number`` is k, or beta of winding numbers."""
+        points, asked = of_list(points, "points", self._dtype), (number, real("max_distance", max_distance))
+        return self._ask(self._mesh.search, kind, what, points, asked, poses, out)
+
+    def _ask(self, function, kind, what, centres, asked, poses, out, is_sorted=False, capacity=None):
+        """What a function of the compiled mesh finds, as a ``kind``; bool stands for flags, float for numbers. It works on
+        the stream of the library that the centres, or points, are of."""
+        library = library_of(centres, self._device)
+        stream = stream_of(library, self._device)
+        poses = [] if poses is None else table("poses", poses, "bodies", 7).tolist()
         results = is_sorted, capacity, out, library.is_numpy
-        found = function(stream, what, library.lent(centres), *asked, [] if poses is None else _rows(poses), results)
+        found = function(stream, what, library.lent(centres), *asked, poses, results)
         if kind is int:
             return found
         if kind is Csr:
@@ -529,25 +511,12 @@ def how_many_threads(threads):
     return min(whole("threads", threads), os.cpu_count() or 1)
 
 
-def _mesh_of(vertices, triangles, threads, bodies=()):
-    """A mesh that was pickled."""
-    return Mesh(vertices, triangles, bodies=bodies, threads=threads)
-
-
 def _parts(bodies):
     """Bodies as pairs of numbers."""
     try:
         return [(whole("bodies", first), whole("bodies", size)) for first, size in bodies]
     except (TypeError, ValueError):
         raise TypeError("bodies: expected pairs of numbers such as [(0, 12), (12, 24)]") from None
-
-
-def _rows(poses):
-    """Poses as lists of numbers."""
-    try:
-        return numpy.asarray(poses, "float64").reshape(-1, 7).tolist()
-    except Exception:  # noqa: BLE001
-        raise TypeError("poses: expected numbers of shape (bodies, 7), of each a position and a quaternion w, x, y, z") from None
 
 
 def _is_wide(array):

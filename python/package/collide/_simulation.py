@@ -1,19 +1,21 @@
 """Particles that move, and collide with a mesh and with each other."""
 
 import dataclasses
+import functools
 import os
 import pathlib
 import tempfile
-from typing import Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, Union, overload
+from typing import Any, Callable, Iterable, Literal, NamedTuple, overload
 
 import numpy
 
 from . import _build
-from ._arrays import CUDA, library_of, module_for, of_list, stream_of
+from ._arrays import CUDA, library_of, module_for, of_list, stream_of, table
 from ._mesh import PRECISIONS, Array, Mesh, how_many_threads
-from ._clumps import ClumpShape, table
+from ._clumps import ClumpShape
 from ._errors import choice, real, refuse, shown, whole
 from .effects import Effect, Vector, _numbers
+from .granular import count_of
 
 
 @dataclasses.dataclass
@@ -41,7 +43,7 @@ class Body:
     def __post_init__(self) -> None:
         self._numbers()
 
-    def _state(self, angle, rate, shift, velocity, belt):
+    def _state(self, angle=0.0, rate=0.0, shift=(0, 0, 0), velocity=(0, 0, 0), belt=(0, 0, 0)):
         """The 16 numbers of a body_state: the body turned around its axis through the pivot, and shifted."""
         axis = numpy.array(_numbers("axis", self.axis, 3))
         length = numpy.linalg.norm(axis)
@@ -124,11 +126,9 @@ class Simulation:
     Pickle and copy.deepcopy copy the mesh, particles and parameters, as `save` does; `sums` begin anew.
     """
 
-    def __init__(
-        self, mesh: Mesh, effects: Iterable[Effect], *, bodies: Iterable[Body] = (), swept: bool = False,
-        precision: str = "exact", threads: int = 0,
-    ) -> None:
-        refuse(not isinstance(mesh, Mesh), "mesh", f"expected a collide.Mesh, got {shown(mesh)}", TypeError)
+    def __init__(self, mesh: Mesh, effects: Iterable[Effect], *, bodies: Iterable[Body] = (), swept: bool = False,
+                 precision: str = "exact", threads: int = 0) -> None:
+        _check_mesh(mesh)
         self.effects = _listed("effects", effects, Effect, "collide.gravity()")
         names = [effect.name for effect in self.effects]
         twice = next((name for name in names if names.count(name) > 1), "")
@@ -161,7 +161,7 @@ class Simulation:
         made = kind(self._path, self._threads, self._device[1])
         if self._bookkeeping is not None:
             made.take_bookkeeping(self._stream(), self._bookkeeping)
-        self._give_mesh(made)
+        self._give_mesh(made, self._mesh, self._bodies)
         for number, effect in enumerate(self.effects):
             for name, values in effect.parameters.items():
                 self._set_parameter(made, number, name, values)
@@ -171,10 +171,11 @@ class Simulation:
         done = simulation.set_parameter(self._stream(), number, name, values)
         refuse(not done, name, "there is no such parameter of so many numbers")
 
-    def _give_mesh(self, simulation):
-        self._version = self._mesh._version  # before its arrays are taken
-        simulation.set_mesh(self._stream(), self._mesh._mesh, [body._numbers() for body in self._bodies])
-        self._states = [body._state(0, 0, (0, 0, 0), (0, 0, 0), (0, 0, 0)) for body in self._bodies]
+    def _give_mesh(self, simulation, mesh, bodies):
+        version = mesh._version  # before its arrays are taken
+        simulation.set_mesh(self._stream(), mesh._mesh, [body._numbers() for body in bodies])
+        self._mesh, self._bodies, self._version = mesh, bodies, version
+        self._states = [body._state() for body in bodies]
 
     def _replace(self, function, *arguments):
         """Calls a function of the compiled simulation that replaces all particles, or of another one where arrays show its
@@ -191,27 +192,24 @@ class Simulation:
                 path = pathlib.Path(folder, "state")
                 self.save(path)
                 state = path.read_bytes()
-        return _simulation_of, (self._mesh, self.effects, self._bodies, self._threads, self._options, state)
+        make = functools.partial(Simulation, bodies=self._bodies, threads=self._threads, **self._options)
+        return make, (self._mesh, self.effects), state
 
-    def set_mesh(self, mesh: Optional[Mesh] = None, bodies: Optional[Iterable[Body]] = None) -> None:
+    def __setstate__(self, state):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "state")
+            path.write_bytes(state)
+            self.load(path)
+
+    def set_mesh(self, mesh: Mesh | None = None, bodies: Iterable[Body] | None = None) -> None:
         """Gives another mesh, or other bodies. After `Mesh.update` the next step calls it. O(triangles)."""
-        if mesh is not None:
-            refuse(not isinstance(mesh, Mesh), "mesh", f"expected a collide.Mesh, got {shown(mesh)}", TypeError)
-            wrong = (mesh._device, mesh._is_wide) != (self._device, self._mesh._is_wide)
-            refuse(wrong, "mesh", "has another device or dtype than the simulation's")
-        before = self._mesh, self._bodies
-        if bodies is not None:
-            self._bodies = _listed("bodies", bodies, Body, "collide.Body(0, 2)")
-        self._mesh = mesh if mesh is not None else self._mesh
-        try:
-            self._give_mesh(self._simulation)
-        except BaseException:
-            self._mesh, self._bodies = before
-            raise
+        mesh = self._mesh if mesh is None else _check_mesh(mesh)
+        wrong = (mesh._device, mesh._is_wide) != (self._device, self._mesh._is_wide)
+        refuse(wrong, "mesh", "has another device or dtype than the simulation's")
+        listed = self._bodies if bodies is None else _listed("bodies", bodies, Body, "collide.Body(0, 2)")
+        self._give_mesh(self._simulation, mesh, listed)
 
-    def set(
-        self, centres: Array, radius: Union[float, Array], velocities: Optional[Array] = None, *, capacity: int = 0
-    ) -> None:
+    def set(self, centres: Array, radius: float | Array, velocities: Array | None = None, *, capacity: int = 0) -> None:
         """Copies particles: those of before are gone, and the time is 0.
 
         centres     (n, 3) of the mesh's dtype and device
@@ -228,10 +226,9 @@ class Simulation:
         self._replace("set", centres, radius, velocities, whole("capacity", capacity, 0, 2**32 - 2))
         self._is_set = True
 
-    def set_clumps(
-        self, shapes: Union[ClumpShape, Iterable[ClumpShape]], centres: Any, rotations: Any = (1, 0, 0, 0),
-        velocities: Any = (0, 0, 0), angular_velocities: Any = (0, 0, 0), *, shape: Any = 0, scale: Any = 1, waiting: int = 0,
-    ) -> None:
+    def set_clumps(self, shapes: ClumpShape | Iterable[ClumpShape], centres: Any, rotations: Any = (1, 0, 0, 0),
+                   velocities: Any = (0, 0, 0), angular_velocities: Any = (0, 0, 0), *, shape: Any = 0, scale: Any = 1,
+                   waiting: int = 0) -> None:
         """Puts n clumps in place of all particles, with `clumps` in the list: those of before are gone, and the time is 0.
         The columns have a row for each sphere, those of a clump one after the other; ``clump_rotation`` and others of a
         clump are in its first row. Radii that differ need `polydisperse`.
@@ -246,7 +243,7 @@ class Simulation:
         waiting             so many of the last are not there: `emit` makes them; each has as many spheres
         """
         shapes = _listed("shapes", shapes, ClumpShape, "collide.ClumpShape(centres, radii)")
-        x = table("centres", centres, None, 3)
+        x = table("centres", centres, "n", 3)
         parts = [table(name, values, len(x), width) for name, values, width in (
             ("shape", shape, 1), ("centres", x, 3), ("rotations", rotations, 4), ("velocities", velocities, 3),
             ("angular_velocities", angular_velocities, 3), ("scale", scale, 1))]
@@ -260,9 +257,7 @@ class Simulation:
         """Advances by the time dt, above 0."""
         self.steps(1, dt)
 
-    def steps(
-        self, n: int, dt: float, *, call: Optional[Callable[[int], Any]] = None, every: Optional[int] = None
-    ) -> None:
+    def steps(self, n: int, dt: float, *, call: Callable[[int], Any] | None = None, every: int | None = None) -> None:
         """Advances n times by dt. On a GPU it does not wait. Ctrl-C ends it between two steps; `time` says which.
 
         call   is called with the number of steps done, after ``every`` so many (a hundredth of n), and at the end: to show
@@ -273,7 +268,7 @@ class Simulation:
         refuse(every is not None and call is None, "every", "is for a function to call")
         share = whole("every", every if every is not None else max(1, n // 100), 1, 2**63 - 1)
         if self._version != self._mesh._version:
-            self._give_mesh(self._simulation)
+            self._give_mesh(self._simulation, self._mesh, self._bodies)
         done = 0
         while done < n:  # each call takes a tenth of a second, or a step
             end = min(n, done - done % share + share) if call is not None else n
@@ -281,10 +276,8 @@ class Simulation:
             if call is not None and done == end:
                 call(done)
 
-    def drive(
-        self, body: int, angle: float = 0, rate: float = 0, *, shift: Vector = (0, 0, 0), velocity: Vector = (0, 0, 0),
-        belt: Vector = (0, 0, 0),
-    ) -> None:
+    def drive(self, body: int, angle: float = 0, rate: float = 0, *, shift: Vector = (0, 0, 0),
+              velocity: Vector = (0, 0, 0), belt: Vector = (0, 0, 0)) -> None:
         """Says where a body is at the end of the next step, and how it moves then, with `driven_bodies` in the list: a
         servo calls it before each step. A body that is not driven again stays there, and its surface goes on moving.
 
@@ -313,11 +306,11 @@ class Simulation:
         """Gives all particles a column's values, packed and of its dtype."""
         solids = next((e.parameters["materials"] for e in self.effects if "materials" in e.parameters), [])
         if name == "material" and hasattr(values, "max") and len(values) != 0:
-            count = next((n for n in range(33) if 3 * n + 2 * n * (n + 1) == len(solids)), 256)
-            refuse(int(values.max()) >= count, "material", f"is {int(values.max())}, and there are {count}, from 0")
+            most, count = int(values.max()), count_of(solids) or 256
+            refuse(most >= count, "material", f"is {most}, and there are {count}, from 0")
         self._simulation.assign(self._stream(), self._column(name), values)
 
-    def change(self, effect: Union[int, str], **parameters: Union[float, Vector]) -> None:
+    def change(self, effect: int | str, **parameters: float | Vector) -> None:
         """Changes parameters of an effect, by its name or its place in the list: ``sim.change('gravity', z=-1.62)``."""
         number = self._number(effect)
         changed = self.effects[number]._changed(parameters)
@@ -326,7 +319,7 @@ class Simulation:
         self.effects = (*self.effects[:number], changed, *self.effects[number + 1 :])
 
     @property
-    def columns(self) -> List[str]:
+    def columns(self) -> list[str]:
         """The names of the columns."""
         return self._simulation.columns(self._stream())
 
@@ -343,7 +336,7 @@ class Simulation:
         """A step that is good for springs between particles; infinite without any."""
         return self._simulation.largest_time_step(self._stream())
 
-    def energy(self, density: float = 0) -> Dict[str, float]:
+    def energy(self, density: float = 0) -> dict[str, float]:
         """Kinetic, rotational, elastic and potential energy, and that of tangential springs; with `contact_work`, also the
         work lost to damping, sliding and rolling, and that given by walls. ``density`` is mass per volume, 0 that of
         the effect by which particles meet. Waits; O(n), O(n log n) where particles meet."""
@@ -380,9 +373,9 @@ class Simulation:
     @overload
     def sums(self, effect: Literal["wear"]) -> Loads: ...
     @overload
-    def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow, Loads]: ...
+    def sums(self, effect: int | str) -> Impulses | Flow | Loads: ...
 
-    def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow, Loads]:
+    def sums(self, effect: int | str) -> Impulses | Flow | Loads:
         """What `reaction`, `mass_flow` or `wear`, by its name or its place in the list, has summed up since `set`, `load`, `clear`,
         a change of its parameters, or of the numbers of bodies and triangles. Waits."""
         number = self._number(effect)
@@ -396,16 +389,16 @@ class Simulation:
         parts = numpy.reshape(found[:-1], (-1, 2, 3))
         return Impulses(*numpy.swapaxes(parts, 0, 1), bodies=len(self._bodies), refused=int(found[-1]))
 
-    def clear(self, effect: Union[int, str]) -> None:
+    def clear(self, effect: int | str) -> None:
         """Begins the sums of `reaction`, `mass_flow` or `wear` anew. Does not wait."""
         self._simulation.clear(self._stream(), self._number(effect))
 
-    def save(self, path: Union[str, os.PathLike]) -> None:
+    def save(self, path: str | os.PathLike) -> None:
         """Writes particles and parameters to a file; not the mesh."""
         path = _path(path)
         self._with_bookkeeping().save(self._stream(), path)
 
-    def load(self, path: Union[str, os.PathLike]) -> None:
+    def load(self, path: str | os.PathLike) -> None:
         """Goes on where `save` was called, by a simulation of the same list: the same bits as without a break."""
         path = _path(path)
         self._with_bookkeeping()
@@ -433,8 +426,13 @@ class Simulation:
         refuse(wrong, "effect", f"there is no {shown(effect)} in the list {', '.join(names)}")
         return effect
 
-    def _stream(self) -> Tuple[int, int]:
+    def _stream(self) -> tuple[int, int]:
         return stream_of(self._library, self._device)
+
+
+def _check_mesh(mesh):
+    refuse(not isinstance(mesh, Mesh), "mesh", f"expected a collide.Mesh, got {shown(mesh)}", TypeError)
+    return mesh
 
 
 def _listed(name, values, kind, example):
@@ -454,14 +452,3 @@ def _path(path):
     name = os.fsdecode(path)
     refuse("\0" in name, "path", "has a null character")
     return name
-
-
-def _simulation_of(mesh, effects, bodies, threads, options, state):
-    """A simulation that was pickled."""
-    made = Simulation(mesh, effects, bodies=bodies, threads=threads, **options)
-    if state is not None:
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder, "state")
-            path.write_bytes(state)
-            made.load(path)
-    return made

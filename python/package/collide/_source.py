@@ -1,13 +1,10 @@
 """Lists of effects as C++: the source of a simulation, and the lists that the package has compiled."""
 
 import hashlib
+import pathlib
 
-try:
-    from . import granular
-    from .effects import bounce, emit, friction, gravity, moving_bodies, polydisperse, sphere_contact, spin, velocity_verlet
-except ImportError:  # CMake runs this file by itself
-    import granular
-    from effects import bounce, emit, friction, gravity, moving_bodies, polydisperse, sphere_contact, spin, velocity_verlet
+from . import granular
+from .effects import bounce, emit, friction, gravity, moving_bodies, polydisperse, sphere_contact, spin, velocity_verlet
 
 _CONTACTS = [gravity(), sphere_contact(), bounce(), friction()]
 _GRAINS = granular.granular_contact(granular.hertz(), granular.mindlin(), granular.epsd())
@@ -57,13 +54,11 @@ def name_of(text):
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-if __name__ == "__main__":  # FOLDER SPACE SUFFIX COUNT: writes the first lists of the package, and prints the files
-    import pathlib
-    import sys
-
-    for effects in BUILT_IN[: int(sys.argv[4])]:
-        text = source(effects, sys.argv[2], "double" if _GRAINS in effects else "float")
-        path = pathlib.Path(sys.argv[1]) / (name_of(text) + sys.argv[3])
+def write(folder, space, suffix, count):
+    """For CMake: writes the first lists of the package to a folder, and prints the files."""
+    for effects in BUILT_IN[: int(count)]:
+        text = source(effects, space, "double" if _GRAINS in effects else "float")
+        path = pathlib.Path(folder) / (name_of(text) + suffix)
         if not path.exists() or path.read_text() != text:
             path.write_text(text)
         print(path)

@@ -10,7 +10,7 @@ triangle, which is what the distance has almost everywhere. Where a gradient doe
 that of the triangle which `Mesh.nearest` finds. `signed_distance` has no second derivatives.
 """
 
-from typing import Any, Optional, Tuple
+from typing import Any
 
 import torch
 from torch.autograd.function import once_differentiable
@@ -42,7 +42,7 @@ class _SignedDistance(torch.autograd.Function):
         return of_points, of_vertices, None, None
 
 
-def signed_distance(points: Tensor, vertices: Tensor, triangles: Tensor, mesh: Optional[Mesh] = None) -> Tensor:
+def signed_distance(points: Tensor, vertices: Tensor, triangles: Tensor, mesh: Mesh | None = None) -> Tensor:
     """(n,): how far each point is from a closed mesh, negative inside, as `Mesh.signed_distance` finds it, with gradients
     to points and vertices.
 
@@ -57,7 +57,7 @@ def signed_distance(points: Tensor, vertices: Tensor, triangles: Tensor, mesh: O
     return _SignedDistance.apply(points, vertices, triangles, _mesh(vertices, triangles, mesh))
 
 
-def nearest(points: Tensor, vertices: Tensor, triangles: Tensor, mesh: Optional[Mesh] = None) -> Tuple[Tensor, Tensor]:
+def nearest(points: Tensor, vertices: Tensor, triangles: Tensor, mesh: Mesh | None = None) -> tuple[Tensor, Tensor]:
     """The nearest point of the mesh to each point, (n, 3), and the distance between the two, (n,), with gradients to
     points and vertices. Computed from the triangle, edge or corner that `Mesh.nearest` finds, by torch, so that there are
     second derivatives too. Arguments and errors as for `signed_distance`; the mesh need not be closed, nor empty. On the

@@ -6,12 +6,9 @@ The functions here are the table of effects: their arguments are the parameters,
 import copy
 import functools
 import inspect
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, TypeVar
+from typing import Any, Callable, Literal, Mapping, Sequence, TypeVar, get_args, get_origin
 
-try:
-    from ._errors import real, refuse, shown
-except ImportError:  # CMake runs _source.py by itself
-    from _errors import real, refuse, shown
+from ._errors import choice, real, refuse, shown
 
 Vector = Sequence[float]  #: three numbers
 
@@ -27,11 +24,11 @@ class Effect:
     Raises TypeError or ValueError, which name the parameter, for what is no number.
     """
 
-    def __init__(self, name: str, parameters: Optional[Mapping[str, Any]] = None, code: str = "") -> None:
+    def __init__(self, name: str, parameters: Mapping[str, Any] | None = None, code: str = "") -> None:
         refuse(not isinstance(name, str) or not name.isidentifier(), "name", f"expected that of a struct, got {shown(name)}")
         refuse(not isinstance(code, str), "code", f"expected C++, got {shown(code)}", TypeError)
         self.name, self.code = name, code
-        self.parameters: Dict[str, List[float]] = {key: _numbers(key, value) for key, value in (parameters or {}).items()}
+        self.parameters: dict[str, list[float]] = {key: _numbers(key, value) for key, value in (parameters or {}).items()}
         self._type, self._is_own = name, True  # in C++
         self._members = {key: f"e.{key}" for key in self.parameters}  # what sets each of them
 
@@ -44,12 +41,16 @@ class Effect:
         kind = type(self).__name__.lower()
         return f'#line 1 "{kind} {self.name}"\n{self.code}\n#line 1 "simulation"' if self._is_own else self.code
 
+    def _take(self, part, law):
+        """Gives it the parameters of a law, which is a member in C++."""
+        for key, values in law.parameters.items():
+            self.parameters[f"{part}_{key}"] = values
+            self._members[f"{part}_{key}"] = law._members[key].replace("e.", f"e.{part}.", 1)
+
     def _changed(self, parameters):
         """The same with other values of some parameters."""
         for unknown in parameters.keys() - self.parameters.keys():
-            raise ValueError(
-                f"{unknown}: {self.name} has no such parameter; it has {', '.join(self.parameters) or 'none'}"
-            )
+            refuse(True, unknown, f"{self.name} has no such parameter; it has {', '.join(self.parameters) or 'none'}")
         changed = copy.copy(self)
         new = {key: _numbers(key, value, len(self.parameters[key])) for key, value in parameters.items()}
         changed.parameters = {**self.parameters, **new}
@@ -63,7 +64,7 @@ class Law(Effect):
     _part = ""  # which it may be; that of the user any
 
 
-def _numbers(name, value, size=None) -> List[float]:
+def _numbers(name, value, size=None) -> list[float]:
     try:
         listed = [value] if isinstance(value, (str, bytes)) else list(value)
     except Exception:  # noqa: BLE001: of a class of the user
@@ -77,6 +78,13 @@ def _numbers(name, value, size=None) -> List[float]:
     return numbers
 
 
+def _values(name, value, annotation):
+    """An argument of a function that describes an effect, as numbers; a word of a Literal is its place there."""
+    if get_origin(annotation) is Literal:
+        value = get_args(annotation).index(choice(name, value, get_args(annotation)))
+    return _numbers(name, value, 3 if annotation is Vector else 1)
+
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -87,7 +95,6 @@ def _describes(kind, header="", type="", memory="", part="", **members) -> Calla
 
     def decorate(function):
         name, arguments = function.__name__.lstrip('_'), inspect.signature(function)
-        sizes = {key: 3 if p.annotation is Vector else 1 for key, p in arguments.parameters.items()}
 
         @functools.wraps(function)
         def make(*positional, **named):
@@ -96,7 +103,7 @@ def _describes(kind, header="", type="", memory="", part="", **members) -> Calla
             values = {**given.arguments, **(function(*positional, **named) or {})}
             made = kind(name, {}, f"#include <collide/{header or 'effects/' + name}.hpp>")
             made.code += f'\n#include "{memory}"' if memory else ""
-            made.parameters = {key: _numbers(key, value, sizes[key]) for key, value in values.items()}
+            made.parameters = {key: _values(key, x, arguments.parameters[key].annotation) for key, x in values.items()}
             made._type, made._is_own, made._part = "collide::" + (type or name), False, part
             made._members = {key: "e." + members.get(key, key) for key in values}
             return made
@@ -133,7 +140,7 @@ def bounce(restitution: float = 0.5) -> Effect:
 
 
 @_describes(Effect)
-def friction(static_coefficient: float = 0.5, kinetic_coefficient: Optional[float] = None) -> Effect:
+def friction(static_coefficient: float = 0.5, kinetic_coefficient: float | None = None) -> Effect:
     """Coulomb friction at the mesh; after `bounce`. The kinetic coefficient is not above the static one, and is it if it
     is not given."""
     return {"kinetic_coefficient": static_coefficient} if kinetic_coefficient is None else None
@@ -150,9 +157,8 @@ def adhesion(max_acceleration: float = 20, capture_speed: float = float("inf")) 
 
 
 @_describes(Effect)
-def sphere_contact(
-    stiffness: float = 1000, damping: float = 0, friction: float = 0, tangential_damping: float = 0, density: float = 1
-) -> Effect:
+def sphere_contact(stiffness: float = 1000, damping: float = 0, friction: float = 0, tangential_damping: float = 0,
+                   density: float = 1) -> Effect:
     """Particles that overlap repel each other: a spring (mass per time squared) and dashpots (mass per time)."""
 
 
@@ -165,10 +171,8 @@ def sleep(speed: float = 0.01, steps: int = 50) -> Effect:
     Effect, position="source.position", half_width="source.half_width", velocity="source.velocity",
     velocity_spread="source.velocity_spread",
 )
-def emit(
-    rate: float, position: Vector, velocity: Vector = (0, 0, 0), half_width: float = 0, velocity_spread: float = 0,
-    radius: float = 0, only_where_free: bool = False,
-) -> Effect:
+def emit(rate: float, position: Vector, velocity: Vector = (0, 0, 0), half_width: float = 0, velocity_spread: float = 0,
+         radius: float = 0, only_where_free: bool = False) -> Effect:
     """A source: ``rate`` particles per time from a cube around ``position``, into the places that `Simulation.set` was
     given as capacity. With `polydisperse` they have ``radius``. ``only_where_free``: none is put where another one is."""
 
@@ -224,9 +228,7 @@ def pair_forces(density: float = 1) -> Effect:
 
 
 @_describes(Effect, "effects/mass_flow", type="mass_flow<>", density="made_of.density", memory="sums.hpp")
-def mass_flow(
-    point: Vector, normal: Vector, unit: float, density: float = 1, disc: float = float("inf")
-) -> Effect:
+def mass_flow(point: Vector, normal: Vector, unit: float, density: float = 1, disc: float = float("inf")) -> Effect:
     """Counts what goes through the plane through ``point`` across ``normal``, or a disc of it with that radius, forwards
     minus backwards: `Simulation.sums`. ``unit``: mass that each particle's is rounded to; ``density``: mass per volume."""
 

@@ -6,14 +6,13 @@
 """
 
 import dataclasses
-from typing import List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Literal, Mapping, Sequence
 
-try:
-    from ._errors import choice, refuse, shown
-    from .effects import Effect, Law, _describes, _numbers
-except ImportError:  # CMake runs _source.py by itself
-    from _errors import choice, refuse, shown
-    from effects import Effect, Law, _describes, _numbers
+from ._errors import refuse, shown
+from .effects import Effect, Law, _describes, _numbers
+
+Damping = Literal["none", "of_tangent", "of_normal"]
+Test = Literal["spring", "spring_and_dashpot"]
 
 
 @_describes(Law, "effects/granular/linear", part="normal")
@@ -36,33 +35,16 @@ def dashpot(damping: float = 0) -> Law:
     """Tangential law: a dashpot (force per slip) up to Coulomb's limit. Remembers nothing; a pile creeps."""
 
 
-def _mindlin(damping, test):
-    choice("damping", damping, DAMPING)
-    return {"damping": DAMPING.index(damping), **_tested(test)}
-
-
-def _tested(test):
-    return {"test": TESTS.index(choice("test", test, TESTS))}
-
-
-DAMPING, TESTS = ("none", "of_tangent", "of_normal"), ("spring", "spring_and_dashpot")
-
-
 @_describes(Law, "effects/granular/cundall_strack", part="tangential")
-def cundall_strack(
-    stiffness_ratio: float = 2 / 7, damping_ratio: float = 0.5, test: str = "spring_and_dashpot", keeps_length: bool = False,
-    turns_about_normal: bool = False,
-) -> Law:
+def cundall_strack(stiffness_ratio: float = 2 / 7, damping_ratio: float = 0.5, test: Test = "spring_and_dashpot",
+                   keeps_length: bool = False, turns_about_normal: bool = False) -> Law:
     """Tangential law: a spring that remembers slip and a dashpot, parts of the normal ones, up to Coulomb's limit: with
     `linear` LAMMPS' gran/hooke/history. The other arguments are those of `mindlin`."""
-    return _tested(test)
 
 
 @_describes(Law, "effects/granular/mindlin", part="tangential")
-def mindlin(
-    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False,
-    turns_about_normal: bool = False,
-) -> Law:
+def mindlin(stiffness_factor: float = 1, damping: Damping = "of_tangent", test: Test = "spring", keeps_length: bool = False,
+            turns_about_normal: bool = False) -> Law:
     """Tangential law, with `hertz`: a spring that remembers slip, after Mindlin, up to Coulomb's limit.
 
     damping  of which spring the dashpot is: 'of_tangent', 'of_normal', or 'none'
@@ -70,30 +52,23 @@ def mindlin(
     keeps_length  the spring keeps its length where it turns with the contact
     turns_about_normal  the spring turns with the spins of the two about the normal, too
     """
-    return _mindlin(damping, test)
 
 
 @_describes(Law, "effects/granular/mindlin", part="tangential")
-def mindlin_rescale(
-    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False,
-    turns_about_normal: bool = False,
-) -> Law:
+def mindlin_rescale(stiffness_factor: float = 1, damping: Damping = "of_tangent", test: Test = "spring",
+                    keeps_length: bool = False, turns_about_normal: bool = False) -> Law:
     """`mindlin`, whose spring also becomes shorter where the area of contact does, as LAMMPS' of that name. Cycles of load
     and slip may make energy, as with `mindlin`."""
-    return _mindlin(damping, test)
 
 
 @_describes(Law, "effects/granular/mindlin", part="tangential")
-def mindlin_force(
-    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False,
-    turns_about_normal: bool = False, rescales: bool = True,
-) -> Law:
+def mindlin_force(stiffness_factor: float = 1, damping: Damping = "of_tangent", test: Test = "spring",
+                  keeps_length: bool = False, turns_about_normal: bool = False, rescales: bool = True) -> Law:
     """`mindlin`, whose force a growing load leaves as it is, and a falling one reduces: no cycle of load and slip makes
     energy. Thornton, Cummins and Cleary, 2013; LAMMPS' mindlin_rescale/force.
 
     rescales  False: a falling load leaves the force as it is, too, and may make energy: LAMMPS' mindlin/force
     """
-    return _mindlin(damping, test)
 
 
 @_describes(Law, "effects/granular/rolling", part="rolling")
@@ -111,17 +86,21 @@ def epsd2(turns_about_normal: bool = False) -> Law:
     """Rolling law, with `hertz`: `epsd` without the dashpot, and with the stiffness of `mindlin`'s spring."""
 
 
+def _law(part, law):
+    """A law that may be this part of granular contact; `none` in place of None."""
+    law = none() if law is None else law
+    refuse(not isinstance(law, Law), part, f"expected a law such as collide.granular.hertz(), got {shown(law)}", TypeError)
+    wrong = law._part not in ("", part) or (law.name, part) == ("none", "normal")
+    refuse(wrong, part, f"{law.name} is no law of this part" + (f", but of {law._part}" if law._part else ""))
+    return law
+
+
 def _beside(rolling, law):
     """A law of torsion, beside one of rolling."""
-    rolling = none() if rolling is None else rolling
-    if not isinstance(rolling, Law):
-        raise TypeError(f"rolling: expected a law such as collide.granular.epsd(), got {shown(rolling)}")
-    refuse(rolling._part not in ("", "rolling"), "rolling", f"{rolling.name} is no law of rolling")
+    rolling = _law("rolling", rolling)
     law.code = "\n".join([rolling._lines(), law.code])
     law._type = f"collide::{law.name}<{rolling._type}>"
-    for key, values in rolling.parameters.items():
-        law.parameters[f"rolling_{key}"] = values
-        law._members[f"rolling_{key}"] = rolling._members[key].replace("e.", "e.rolling.", 1)
+    law._take("rolling", rolling)
     return law
 
 
@@ -133,7 +112,7 @@ def _marshall(stiffness_ratio: float, damping_ratio: float) -> Law: ...
 def _torsion(stiffness: float, damping: float, friction: float) -> Law: ...
 
 
-def marshall(rolling: Optional[Law] = None, stiffness_ratio: float = 0, damping_ratio: float = 1) -> Law:
+def marshall(rolling: Law | None = None, stiffness_ratio: float = 0, damping_ratio: float = 1) -> Law:
     """Rolling law: torsion, which is turning about the normal, beside a law of rolling. The surfaces stick by springs and
     dashpots, parts of the normal ones, up to 2/3 of the contact's radius times friction: Marshall 2009.
 
@@ -144,7 +123,7 @@ def marshall(rolling: Optional[Law] = None, stiffness_ratio: float = 0, damping_
     return _beside(rolling, _marshall(stiffness_ratio, damping_ratio))
 
 
-def torsion(rolling: Optional[Law] = None, stiffness: float = 0, damping: float = 0, friction: float = 0) -> Law:
+def torsion(rolling: Law | None = None, stiffness: float = 0, damping: float = 0, friction: float = 0) -> Law:
     """Rolling law: torsion beside a law of rolling: a spring (torque per angle), a dashpot (torque per angular velocity),
     and a limit (a length times the normal force)."""
     return _beside(rolling, _torsion(stiffness, damping, friction))
@@ -187,9 +166,8 @@ class SurfacePair:
     cohesion: float = 0
 
 
-def materials(
-    solids: Union[Solid, Sequence[Solid]], pairs: Union[SurfacePair, Mapping[Tuple[int, int], SurfacePair]]
-) -> List[float]:
+def materials(solids: Solid | Sequence[Solid],
+              pairs: SurfacePair | Mapping[tuple[int, int], SurfacePair]) -> list[float]:
     """The materials of particles and walls, as numbers: one solid, or up to 32, and what each pair of them does.
 
     solids  one, or several: particles then have the column ``material``, uint8, with the number of theirs
@@ -202,17 +180,19 @@ def materials(
     for i in range(len(solids)):
         for j in range(i + 1):
             pair = pairs if isinstance(pairs, SurfacePair) else pairs.get((i, j), pairs.get((j, i)))
-            if pair is None:
-                raise ValueError(f"pairs: the pair ({j}, {i}) is missing")
+            refuse(pair is None, "pairs", f"the pair ({j}, {i}) is missing")
             numbers += _numbers("pairs", dataclasses.astuple(pair), 4)
     return numbers
 
 
-def granular_contact(
-    normal: Law, tangential: Optional[Law] = None, rolling: Optional[Law] = None, cohesion: Optional[Law] = None, *,
-    materials: Sequence[float] = materials(Solid(), SurfacePair()), wall_material: int = 0, arm_shortening: float = 0.5,
-    slip_shortening: float = 0.5,
-) -> Effect:
+def count_of(numbers: Sequence[float]) -> int | None:
+    """How many solids the numbers of `materials` are of; None if they are no such numbers."""
+    return next((n for n in range(1, 33) if 3 * n + 2 * n * (n + 1) == len(numbers)), None)
+
+
+def granular_contact(normal: Law, tangential: Law | None = None, rolling: Law | None = None,
+                     cohesion: Law | None = None, *, materials: Sequence[float] = materials(Solid(), SurfacePair()),
+                     wall_material: int = 0, arm_shortening: float = 0.5, slip_shortening: float = 0.5) -> Effect:
     """Granular contact between particles, which are solid, and of particles with the mesh, which is solid then. Use float64
     and `velocity_verlet`; no `bounce`, `friction`, `adhesion` or `spin` beside it.
 
@@ -226,29 +206,21 @@ def granular_contact(
     normal_stiffness=2000)``. `Simulation.largest_time_step` says how long a step may be.
     """
     laws = {"normal": normal, "tangential": tangential, "rolling": rolling, "cohesion": cohesion}
-    laws = {part: law if law is not None else none() for part, law in laws.items()}
-    for part, law in laws.items():
-        if not isinstance(law, Law):
-            raise TypeError(f"{part}: expected a law such as collide.granular.hertz(), got {shown(law)}")
-        wrong = law._part not in ("", part) or (law.name, part) == ("none", "normal")
-        refuse(wrong, part, f"{law.name} is no law of this part" + (f", but of {law._part}" if law._part else ""))
-    count = next((n for n in range(1, 33) if 3 * n + 2 * n * (n + 1) == len(materials)), None)
-    if count is None:
-        raise ValueError("materials: expected what collide.granular.materials makes of 1 to 32 solids")
+    laws = {part: _law(part, law) for part, law in laws.items()}
+    count = count_of(materials)
+    refuse(count is None, "materials", "expected what collide.granular.materials makes of 1 to 32 solids")
     arms = {"arm_shortening": arm_shortening, "slip_shortening": slip_shortening}
     made = Effect("granular_contact", {"materials": materials, **arms})
     solids = "collide::one_material" if count == 1 else f"collide::materials<{count}>"
     setter = "collide_python::set_materials(e.made_of, v)"
     made._members["materials"] = f"{len(materials)}, [&](double const* v) {{ {setter}; }}"
-    if count > 1:
+    if count != 1:
         made.parameters["wall_material"] = _numbers("wall_material", wall_material, 1)
         made._members["wall_material"] = "e.made_of.wall_material"
     for part, law in laws.items():
-        for key, values in law.parameters.items():
-            made.parameters[f"{part}_{key}"] = values
-            made._members[f"{part}_{key}"] = law._members[key].replace("e.", f"e.{part}.", 1)
+        made._take(part, law)
     codes = ["#include <collide/effects/granular_contact.hpp>", *(law._lines() for law in laws.values())]
-    made._is_own = False
     made.code = "\n".join(dict.fromkeys([*codes, '#include "granular_materials.hpp"']))
+    made._is_own = False
     made._type = f"collide::granular_contact<{', '.join([*(law._type for law in laws.values()), solids])}>"
     return made
