@@ -83,34 +83,32 @@ inline std::string name_of_device(int type, int number) {
   return (type == nb::device::cuda::value ? "GPU " : "device " + std::to_string(type) + ":") + std::to_string(number);
 }
 
+/// What the `__dlpack__` of an array exports.
+inline nb::object exported(nb::handle from, char const* name, place const& at) {
+  try {
+    auto const is_here = [&] {
+      nb::object const type = from.attr("__dlpack_device__")()[0];
+      return is_on_host(nb::cast<int>(nb::int_(nb::getattr(type, "value", type))));  // Open3D's is no int
+    };
+    bool const has_stream = !is_on_host(at.device_type) && !is_here();  // that it is here is told by who asks
+    return has_stream ? from.attr("__dlpack__")(nb::arg("stream") = at.given) : from.attr("__dlpack__")();
+  } catch (nb::python_error& e) {
+    if (!e.matches(PyExc_Exception)) throw;  // Ctrl-C
+    refuse<nb::type_error>(name, std::string("cannot be shared without a copy: ") + nb::str(e.value()).c_str());
+  }
+}
+
 /// The array that a Python object is. `Array` without nb::ro is one to write to.
 template <class Array = array>
 Array import_array(nb::handle from, char const* name, place const& at) {
   Array a;
   if ((is_on_host(at.device_type) || PyCapsule_CheckExact(from.ptr())) && nb::try_cast(from, a, false)) {
     // an array of the host, or one that its library has exported
-  } else if (nb::hasattr(from, "__dlpack__")) {
-    nb::object capsule;
-    try {
-      nb::object const method = from.attr("__dlpack__");
-      auto const is_here = [&] {
-        nb::object const type = from.attr("__dlpack_device__")()[0];
-        return is_on_host(nb::cast<int>(nb::int_(nb::getattr(type, "value", type))));  // Open3D's is no int
-      };
-      try {
-        capsule = is_on_host(at.device_type) ? method() : method(nb::arg("stream") = at.given);
-      } catch (nb::python_error&) {
-        if (is_on_host(at.device_type) || !is_here()) throw;
-        capsule = method();  // an array of the host knows no stream; that it is there is told below
-      }
-    } catch (nb::python_error& e) {
-      if (!e.matches(PyExc_Exception)) throw;  // Ctrl-C
-      refuse<nb::type_error>(name, std::string("cannot be shared without a copy: ") + nb::str(e.value()).c_str());
-    }
-    if (!nb::try_cast(capsule, a, false)) refuse<nb::type_error>(name, "is read-only, or no array that can be shared");
-  } else {
+  } else if (!nb::hasattr(from, "__dlpack__")) {
     refuse<nb::type_error>(name, "expected an array (numpy, torch, cupy, jax, warp: with __dlpack__), got " +
                                      std::string(nb::type_name(from.type()).c_str()));
+  } else if (!nb::try_cast(exported(from, name, at), a, false)) {
+    refuse<nb::type_error>(name, "is read-only, or no array that can be shared");
   }
   bool const same = is_on_host(at.device_type) ? is_on_host(a.device_type())
                                                : a.device_type() == at.device_type && a.device_id() == at.device;
@@ -160,25 +158,22 @@ struct copy_triangle {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     for (int k = 0; k < 3; ++k) {
-      auto const x = static_cast<std::uint64_t>(from[static_cast<std::int64_t>(i) * row + k * column]);
+      std::uint64_t const x = from[static_cast<std::int64_t>(i) * row + k * column];
       to[3 * i + static_cast<std::size_t>(k)] = x < vertices ? static_cast<collide::id>(x) : other;
     }
   }
 };
 
-/// Copies triangles of shape (m, 3), of any integers of 32 or 64 bits and any strides.
+/// Copies triangles of shape (m, 3), of any integers of 32 or 64 bits and any strides. As integers without a sign they
+/// are the same numbers of vertices, and below 0 none.
 template <class Space>
 void copy_triangles(Space const& space, array const& a, std::size_t vertices, collide::id other, collide::id* to) {
-  auto const copy = [&](auto type) {
-    using from = decltype(type);
-    if (a.dtype() != nb::dtype<from>()) return;
-    auto const* const data = static_cast<from const*>(a.data());
-    space.for_each(a.shape(0), copy_triangle<from>{data, a.stride(0), a.stride(1), vertices, other, to});
+  auto const copy = [&](auto const* from) {
+    using integer = std::remove_const_t<std::remove_pointer_t<decltype(from)>>;
+    space.for_each(a.shape(0), copy_triangle<integer>{from, a.stride(0), a.stride(1), vertices, other, to});
   };
-  copy(std::int32_t{});
-  copy(std::uint32_t{});
-  copy(std::int64_t{});
-  copy(std::uint64_t{});
+  if (a.dtype().bits == 32) return copy(static_cast<std::uint32_t const*>(a.data()));
+  copy(static_cast<std::uint64_t const*>(a.data()));
 }
 
 inline void check_triangles(array const& a, std::size_t vertices) {

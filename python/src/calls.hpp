@@ -27,11 +27,7 @@ inline std::atomic<int> calls_under_way{0};
 inline std::atomic<bool> interpreter_ends{false};
 inline std::atomic<int> forks{0};  ///< that lead to this process
 
-/// The thread that ends the interpreter.
-inline std::thread::id& ending_thread() {
-  static std::thread::id id;
-  return id;
-}
+inline std::thread::id ending_thread;  ///< that ends the interpreter
 
 /// Counts forks from now on.
 inline void watch_forks() {
@@ -44,8 +40,7 @@ class call_under_way {
  public:
   call_under_way() {
     if (interpreter_ends) {
-      if (std::this_thread::get_id() == ending_thread())
-        throw collide::error("collide: the interpreter is about to end");
+      if (std::this_thread::get_id() == ending_thread) throw collide::error("collide: the interpreter is about to end");
       PyEval_SaveThread();
       while (true) std::this_thread::sleep_for(std::chrono::hours(1));  // as Python's own calls do by then
     }
@@ -75,80 +70,66 @@ inline void look_for_signals() {
   check_signals();
 }
 
-/// What one thread uses at a time, in the order in which they come.
+/// What one thread uses at a time, in the order in which they come: a mutex for std::lock_guard.
 class turns {
  public:
   /// Waits for other threads. Refuses a call from within another one of this thread, which would wait for itself.
-  void begin() {
+  void lock() {
     if (is_lost())
       throw collide::error(
           "collide: this process was forked while another thread used this object, which is in the middle of that "
           "call for ever: make another one");
-    if (holder_ == std::this_thread::get_id())
+    auto const me = std::this_thread::get_id();
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (std::find(queue_.begin(), queue_.end(), me) != queue_.end())
       throw collide::error(
           "collide: a call from within another one to the same object: from a signal's handler, __del__ or __dlpack__");
-    std::uint64_t const ticket = next_++;
-    auto const is_next = [&] { return holder_ == std::thread::id() && queue_.front() == ticket; };
-    std::unique_lock<std::mutex> lock(mutex_);
-    queue_.push_back(ticket);
-    while (!is_next()) {
+    queue_.push_back(me);
+    while (queue_.front() != me) {
       lock.unlock();  // before this thread takes the GIL again
       {
         without_gil const others_run;
         lock.lock();
-        changed_.wait_for(lock, std::chrono::milliseconds(100), is_next);
-        if (!is_next()) queue_.erase(std::find(queue_.begin(), queue_.end(), ticket));  // for a handler's own calls
+        changed_.wait_for(lock, std::chrono::milliseconds(100), [&] { return queue_.front() == me; });
         lock.unlock();
       }
+      bool const is_interrupted = PyErr_CheckSignals() != 0;
       lock.lock();
-      if (!queue_.empty() && queue_.front() == ticket) continue;
-      lock.unlock();
-      check_signals();
-      lock.lock();
-      queue_.push_front(ticket);
+      if (!is_interrupted) continue;
+      leave(me);
+      throw nb::python_error();
     }
-    queue_.pop_front();
-    holder_ = std::this_thread::get_id();
   }
-  void end() {
+  void unlock() {
     std::lock_guard<std::mutex> const lock(mutex_);
-    holder_ = std::thread::id();
-    changed_.notify_all();
+    leave(std::this_thread::get_id());
   }
 
   /// Whether a thread that a fork has left behind is in the middle of its turn.
   bool is_lost() {
-    if (forks_ == forks || holder_ == std::this_thread::get_id()) return false;
+    if (forks_ == forks) return false;
     std::unique_lock<std::mutex> const lock(mutex_, std::try_to_lock);
-    if (!lock || holder_ != std::thread::id() || !queue_.empty()) return true;
+    if (!lock || (!queue_.empty() && queue_.front() != std::this_thread::get_id())) return true;
+    if (!queue_.empty()) queue_.resize(1);  // the others are not in this process
     forks_ = forks;
     return false;
   }
 
  private:
+  void leave(std::thread::id of) {
+    queue_.erase(std::find(queue_.begin(), queue_.end(), of));
+    changed_.notify_all();
+  }
+
   std::mutex mutex_;  ///< of what follows
   std::condition_variable changed_;
-  std::atomic<std::thread::id> holder_{};
-  std::deque<std::uint64_t> queue_;  ///< tickets of those that wait
-  std::uint64_t next_ = 0;
+  std::deque<std::thread::id> queue_;  ///< first the thread whose turn it is
   int forks_ = forks;
-};
-
-/// A turn.
-class one_at_a_time {
- public:
-  explicit one_at_a_time(turns& of) : of_{of} { of_.begin(); }
-  ~one_at_a_time() { of_.end(); }
-  one_at_a_time(one_at_a_time const&) = delete;
-  one_at_a_time& operator=(one_at_a_time const&) = delete;
-
- private:
-  turns& of_;
 };
 
 /// For `atexit`: waits for the calls of other threads, which would not come back to an interpreter that is gone.
 inline void wait_for_calls() {
-  ending_thread() = std::this_thread::get_id();
+  ending_thread = std::this_thread::get_id();
   interpreter_ends = true;
   without_gil const others_run;
   while (!is_forked() && calls_under_way > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));

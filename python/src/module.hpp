@@ -47,12 +47,12 @@ template <class Space, class S>
 void bind_mesh(nb::module_& m, char const* name) {
   using type = mesh<Space, S>;
   nb::class_<held<type>> c(m, name);
-  c.def(nb::init<int, int>()).def("__len__", [](held<type> const& of) { return of.one->size(); });
+  using bodies = std::vector<std::pair<std::size_t, std::size_t>> const&;
+  c.def(nb::init<int, int, bodies>()).def("__len__", [](held<type> const& of) { return of.one->size(); });
   bind_call(c, "take", &type::take);
   bind_call(c, "query", &type::query);
   bind_call(c, "search", &type::search);
   bind_call(c, "triangles", &type::triangles);
-  bind_call(c, "divide", &type::divide);
   bind_call(c, "check", &type::check);
   bind_call(c, "seems_closed", &type::seems_closed);
 }

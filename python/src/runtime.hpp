@@ -87,7 +87,7 @@ class called {
 
   struct call {
     call_under_way under_way;
-    one_at_a_time alone;
+    std::lock_guard<turns> alone;
     typename runtime<Space>::scope here;
     call(called& of, stream_of_call const& stream) : alone(of.turns_), here(of.runtime_, stream) {}
   };

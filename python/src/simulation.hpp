@@ -122,13 +122,13 @@ class simulation : public called<Space> {
     if (is_shown()) return false;
     without_gil const others_run;
     one().books->load(one().whole(), path);
-    one().clear_all();
+    one().clear(all_effects);
     return true;
   }
 
   std::vector<std::string> columns() {
     std::vector<std::string> names;
-    for (column const& c : one().columns()) names.emplace_back(c.name);
+    for (column const& c : one().columns()) names.push_back(c.name);
     return names;
   }
 
@@ -140,35 +140,34 @@ class simulation : public called<Space> {
       std::shared_ptr<simulation_base> one;
     };
     nb::object const owner = owner_of(std::unique_ptr<owned>(new owned{runtime_.memory(), one_}));
-    std::vector<std::size_t> shape{one().size()};
-    if (c.width != 1) shape.push_back(c.width);
     auto const code = c.is_float ? dlpack::Float : c.bytes == 1 ? dlpack::UInt : dlpack::Int;
-    return give(c.data, {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(8 * c.bytes), 1}, shape, owner,
+    return give(c.data, {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(8 * c.bytes), 1}, rows_of(c), owner,
                 runtime_.at(), numpy);
   }
 
   void assign(std::size_t number, nb::object const& values) {
-    std::size_t const n = one().size();
     column const c = one().columns()[number];
-    array const a = runtime_.keep(import_array(values, c.name, runtime_.at()));
+    char const* const name = c.name.c_str();
+    array const a = runtime_.keep(import_array(values, name, runtime_.at()));
     auto const kind = static_cast<dlpack>(a.dtype().code);
     bool const is_integer = kind == dlpack::Int || kind == dlpack::UInt || kind == dlpack::Bool;
     if (a.dtype().bits != 8 * c.bytes || (c.is_float ? kind != dlpack::Float : !is_integer))
-      refuse<nb::type_error>(c.name,
+      refuse<nb::type_error>(name,
                              "has dtype " + name_of(a.dtype()) + ", and the column another: nothing is converted");
-    std::vector<std::size_t> shape{n};
-    if (c.width != 1) shape.push_back(c.width);
-    if (!has_shape(a, shape) || !is_packed(a))
-      refuse(c.name, "has shape " + shape_of(a) + ", expected packed rows for " + std::to_string(n) + " particles of " +
-                         std::to_string(c.width) + " number(s)");
+    if (!has_shape(a, rows_of(c)) || !is_packed(a))
+      refuse(name, "has shape " + shape_of(a) + ", expected packed rows: " + text_of(rows_of(c)));
     if (a.size() == 0) return;
     without_gil const others_run;
-    one().assign(number, a.data());
+    c.assign(one().whole(), a.data());
   }
 
  private:
   using called<Space>::runtime_;
   using dlpack = nb::dlpack::dtype_code;
+
+  std::vector<std::size_t> rows_of(column const& c) const {
+    return c.width == 1 ? std::vector<std::size_t>{one_->size()} : std::vector<std::size_t>{one_->size(), c.width};
+  }
 
   /// A function of a library, which stays loaded for good: its code is in objects that live on.
   template <class Function>

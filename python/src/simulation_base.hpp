@@ -13,11 +13,12 @@ namespace collide_python {
 
 /// A column of particles in memory of the space.
 struct column {
-  char const* name;
+  std::string name;
   std::size_t width;  ///< 3, or 1
   bool is_float;      ///< or else an integer
   std::size_t bytes;  ///< of one number
   void* data;
+  void (*assign)(void* to, void const* values);  ///< gives a collide::simulation such values
 };
 
 /// Where a simulation runs: threads on the host; stream and memory on a GPU.
@@ -40,6 +41,8 @@ class bookkeeping {
   virtual void save(void const* of, std::string const& path) const = 0;
   virtual void load(void* of, std::string const& path) const = 0;
 };
+
+inline constexpr std::size_t all_effects = static_cast<std::size_t>(-1);
 
 class simulation_base {
  public:
@@ -68,7 +71,6 @@ class simulation_base {
   /// What the effect of a number has summed up since `clear`; nothing if it does not.
   virtual std::vector<double> sums(std::size_t effect) = 0;
   virtual void clear(std::size_t effect) = 0;
-  virtual void clear_all() = 0;
   /// What has come due, what of it overlapped, and what was not born; nothing without a source.
   virtual std::vector<double> births() = 0;
   /// Writes the particles to a collide::sphere_view.
@@ -76,7 +78,6 @@ class simulation_base {
   /// The states of all driven bodies, 16 numbers each: those of collide::body_state. False if none is driven.
   virtual bool drive(std::vector<double> const& states) = 0;
   virtual std::vector<column> columns() = 0;
-  virtual void assign(std::size_t column, void const* values) = 0;
 
   std::unique_ptr<bookkeeping> books;  ///< what the others need
   std::vector<double> energy(double density) { return books->energy(whole(), density); }

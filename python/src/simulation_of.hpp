@@ -73,9 +73,10 @@ class simulation_of final : public simulation_base {
 
   bool set_parameter(std::size_t effect, std::string const& name, std::vector<double> const& values) override {
     bool found = false;
-    parameter_setter const setter{name, values, &found};
-    std::size_t number = 0;
-    ((number++ == effect ? set<Effect>(setter) : void()), ...);
+    each(effect, [&](auto* type, auto& sums) {
+      parameters(of(type), parameter_setter{name, values, &found});
+      sums.make(one_.space(), of(type), bodies_, triangles_);
+    });
     return found;
   }
 
@@ -86,35 +87,30 @@ class simulation_of final : public simulation_base {
     if (bodies_ == body_count && triangles_ == view.size()) return;
     bodies_ = body_count;
     triangles_ = view.size();
-    (std::get<sums_of<Effect>>(sums_).make(one_.space(), one_.template effect<Effect>(), bodies_, triangles_), ...);
+    each(all_effects, [&](auto* type, auto& sums) { sums.make(one_.space(), of(type), bodies_, triangles_); });
   }
   void set(void const* spheres, void const* velocities, std::size_t capacity) override {
     one_.set(*static_cast<collide::sphere_view<S> const*>(spheres), static_cast<S const*>(velocities), capacity);
-    clear_all();
+    clear(all_effects);
   }
   bool set_clumps([[maybe_unused]] std::vector<double> const& shapes,
                   [[maybe_unused]] std::vector<double> const& placed, [[maybe_unused]] std::size_t waiting) override {
     if constexpr (has_clumps) {
-      std::vector<collide::clump_shape> of;
+      std::vector<collide::clump_shape> kinds;
       for (double const* from = shapes.data(); from != shapes.data() + shapes.size();) {
-        collide::clump_shape& shape = of.emplace_back();
-        auto const count = static_cast<std::size_t>(*from++);
-        shape.volume = *from++;
-        from = take(from, shape.inertia);
-        from = take(from, shape.frame.rotation);  // its position is that of the centre of mass, as for Python
-        for (std::size_t k = 0; k < count; ++k, from += 4)
-          shape.spheres.push_back({{from[0], from[1], from[2]}, from[3]});
+        collide::clump_shape& shape = kinds.emplace_back();
+        double const* const last = from + 9 + 4 * static_cast<std::size_t>(*from);
+        shape.volume = from[1];
+        std::copy_n(from + 2, 3, shape.inertia);
+        std::copy_n(from + 5, 4, shape.frame.rotation);  // its position is that of the centre of mass, as for Python
+        for (from += 9; from != last; from += 4) shape.spheres.push_back({{from[0], from[1], from[2]}, from[3]});
       }
+      static_assert(sizeof(collide::placed_clump) == 15 * sizeof(double));
       std::vector<collide::placed_clump> all(placed.size() / 15);
-      double const* from = placed.data();
-      for (collide::placed_clump& c : all) {
-        c.shape = static_cast<std::size_t>(*from++);
-        from = take(take(from, c.at.position), c.at.rotation);
-        from = take(take(from, c.moving.linear), c.moving.angular);
-        c.scale = *from++;
-      }
-      collide::set_clumps(one_, of, all, waiting);
-      clear_all();
+      if (!all.empty()) std::memcpy(static_cast<void*>(all.data()), placed.data(), placed.size() * sizeof(double));
+      for (std::size_t i = 0; i < all.size(); ++i) all[i].shape = static_cast<std::size_t>(placed[15 * i]);
+      collide::set_clumps(one_, kinds, all, waiting);
+      clear(all_effects);
     }
     return has_clumps;
   }
@@ -124,17 +120,14 @@ class simulation_of final : public simulation_base {
   double time() override { return one_.time(); }
   double largest_time_step() override { return collide::largest_time_step(one_); }
 
-  std::vector<double> sums(std::size_t effect) override {  // not by way of the effect, which would wake what sleeps
+  std::vector<double> sums(std::size_t effect) override {
     std::vector<double> found;
-    std::size_t number = 0;
-    ((number++ == effect ? void(found = std::get<sums_of<Effect>>(sums_).read(one_.space())) : void()), ...);
+    each(effect, [&](auto*, auto& sums) { found = sums.read(one_.space()); });
     return found;
   }
   void clear(std::size_t effect) override {
-    std::size_t number = 0;
-    ((number++ == effect ? std::get<sums_of<Effect>>(sums_).clear(one_.space()) : void()), ...);
+    each(effect, [&](auto*, auto& sums) { sums.clear(one_.space()); });
   }
-  void clear_all() override { (std::get<sums_of<Effect>>(sums_).clear(one_.space()), ...); }
 
   std::vector<double> births() override {
     if constexpr (type::effects_type::makes) {
@@ -156,24 +149,20 @@ class simulation_of final : public simulation_base {
   }
 
   std::vector<column> columns() override { return describe(typename type::columns{}); }
-  void assign(std::size_t i, void const* values) override { assign(i, values, typename type::columns{}); }
 
  private:
   static constexpr bool has_clumps = type::effects_type::has_clumps;
-  template <class Column>
-  using element = collide::detail::column_element<Column, S>;
 
-  template <std::size_t N>
-  static double const* take(double const* from, double (&to)[N]) {
-    std::copy(from, from + N, to);
-    return from + N;
+  /// Calls f with the type of an effect, or of each, and its sums: not with the effect, which would wake what sleeps.
+  template <class F>
+  void each(std::size_t effect, F const& f) {
+    std::size_t number = 0;
+    auto const is_meant = [&] { return effect == all_effects || effect == number++; };
+    ((is_meant() ? f(static_cast<Effect*>(nullptr), std::get<sums_of<Effect>>(sums_)) : void()), ...);
   }
-
   template <class E>
-  void set(parameter_setter const& setter) {
-    E& effect = one_.template effect<E>();
-    parameters(effect, setter);
-    std::get<sums_of<E>>(sums_).make(one_.space(), effect, bodies_, triangles_);
+  E& of(E*) {
+    return one_.template effect<E>();
   }
 
   template <class... Column>
@@ -182,25 +171,19 @@ class simulation_of final : public simulation_base {
   }
   template <class Column>
   column describe() {
-    static std::string const name = short_name<Column>();
-    bool const is_float = std::is_floating_point<element<Column>>::value;
+    using element = collide::detail::column_element<Column, S>;
     std::size_t const width = collide::detail::column_layout<Column, S>::width;
-    return {name.c_str(), width, is_float, sizeof(element<Column>), one_.template data<Column>()};
-  }
-  template <class... Column>
-  void assign(std::size_t i, void const* values, collide::columns<Column...>) {
-    std::size_t number = 0;
-    ((number++ == i ? assign<Column>(static_cast<element<Column> const*>(values)) : void()), ...);
-  }
-  template <class Column>
-  void assign(element<Column> const* values) {
-    using of_spheres =
-        collide::columns<collide::position, collide::velocity, collide::angular_velocity, collide::radius>;
-    if constexpr (has_clumps && collide::detail::contains<of_spheres, Column>) {
-      throw collide::error("collide: set_clumps says where the spheres of clumps are, and how they move");
-    } else {
-      one_.template assign<Column>(values);
-    }
+    auto const assign = [](void* to, void const* values) {
+      using of_spheres =
+          collide::columns<collide::position, collide::velocity, collide::angular_velocity, collide::radius>;
+      if constexpr (has_clumps && collide::detail::contains<of_spheres, Column>) {
+        throw collide::error("collide: set_clumps says where the spheres of clumps are, and how they move");
+      } else {
+        static_cast<type*>(to)->template assign<Column>(static_cast<element const*>(values));
+      }
+    };
+    bool const is_float = std::is_floating_point<element>::value;
+    return {short_name<Column>(), width, is_float, sizeof(element), one_.template data<Column>(), assign};
   }
 
   type one_;

@@ -23,6 +23,13 @@ struct sums_in_memory {
   }
 };
 
+/// Appends rows of nothing else than doubles.
+template <class Row>
+void append(std::vector<double>& to, std::vector<Row> const& rows) {
+  auto const* const first = reinterpret_cast<double const*>(rows.data());
+  to.insert(to.end(), first, first + rows.size() * (sizeof(Row) / sizeof(double)));
+}
+
 template <>
 struct sums_of<collide::reaction> : sums_in_memory<collide::reaction_sums> {
   /// For so many bodies and, where the effect wants them, triangles. Sums begin at 0.
@@ -35,12 +42,8 @@ struct sums_of<collide::reaction> : sums_in_memory<collide::reaction_sums> {
   template <class Space>
   std::vector<double> read(Space const& space) const {
     std::vector<double> found;
-    for (auto const& part : {sums->read(space), sums->read_triangles(space)}) {
-      for (collide::body_impulse const& one : part) {
-        found.insert(found.end(), one.linear, one.linear + 3);
-        found.insert(found.end(), one.angular, one.angular + 3);
-      }
-    }
+    append(found, sums->read(space));
+    append(found, sums->read_triangles(space));
     found.push_back(static_cast<double>(sums->refused(space)));
     return found;
   }
@@ -72,7 +75,7 @@ struct sums_of<collide::wear<>> : sums_in_memory<collide::wear_sums> {
   template <class Space>
   std::vector<double> read(Space const& space) const {
     std::vector<double> found;
-    for (auto const& load : sums->read(space)) found.insert(found.end(), {load.normal_impulse, load.sliding_work});
+    append(found, sums->read(space));
     return found;
   }
 };

@@ -213,12 +213,10 @@ class Mesh:
         self._is_wide = _is_wide(vertices)
         self._threads = how_many_threads(threads)
         make = module.MeshDouble if self._is_wide else module.MeshFloat
-        self._mesh = make(self._threads, self._device[1])
+        self._bodies = _parts(bodies)
+        self._mesh = make(self._threads, self._device[1], self._bodies)
         self._mesh.take(stream_of(self._library, self._device), vertices, triangles, bool(validate))
         self._vertices, self._version, self._is_known_closed = vertices, 0, False
-        self._bodies = _parts(bodies)
-        if self._bodies:
-            self._mesh.divide(stream_of(self._library, self._device), self._bodies)
 
     @classmethod
     def of(cls, mesh: Any, **options: Any) -> "Mesh":
