@@ -103,17 +103,14 @@ class mesh : public called<Space> {
   nb::object check(std::string_view what, double tolerance) {
     if (what == "intersections")
       return two_columns(without_the_gil([&] { return collide::self_intersections(view_, on_host()); }));
-    nb::list parts;
     if (what == "closed") {
       auto const report = without_the_gil([&] { return collide::validate_closed(view_); });
-      for (int k = 0; k < collide::seam_problem_count; ++k)
-        parts.append(two_columns(report.where(static_cast<collide::seam_problem>(k))));
+      auto const parts = parts_of<collide::seam_problem>(report, collide::seam_problem_count);
       return nb::make_tuple(report.message(), report.closed(), report.oriented(), parts);
     }
     auto const report = without_the_gil([&] { return collide::validate_surface(view_, tolerance, on_host()); });
-    for (int k = 0; k < collide::surface_problem_count; ++k)
-      parts.append(two_columns(report.where(static_cast<collide::surface_problem>(k))));
-    return nb::make_tuple(report.message(), parts);
+    return nb::make_tuple(report.message(),
+                          parts_of<collide::surface_problem>(report, collide::surface_problem_count));
   }
 
   /// Whether each edge has an even number of triangles, as far as a number of 64 bits tells; on a GPU it does not look.
@@ -374,6 +371,14 @@ class mesh : public called<Space> {
     Record* const to = own->template records<Record>(runtime_, n);
     found = given<word>(to, shape, owner_of(std::move(own)), with.numpy);
     return to;
+  }
+
+  /// Where a report has each kind of problem.
+  template <class Problem, class Report>
+  nb::list parts_of(Report const& report, int count) {
+    nb::list parts;
+    for (int k = 0; k < count; ++k) parts.append(two_columns(report.where(static_cast<Problem>(k))));
+    return parts;
   }
 
   template <class Check>

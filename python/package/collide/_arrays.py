@@ -1,5 +1,6 @@
 """Which library an array is of, on which stream it works, and how results become arrays of it."""
 
+import functools
 import importlib
 import os
 
@@ -175,11 +176,24 @@ class _Ordered:
         return self.result.__dlpack__(**others)
 
 
-class _Jax(_Numpy):
-    def stream(self, device):  # it has no stream to work on: its arrays have ours wait for them, and its stream ours
-        own = _cuda.own_stream(device)
-        return own, own
+class _Stranger(_Numpy):
+    """Arrays on a GPU of a library that is not known here: results have __dlpack__. It has no stream to work on: its
+    arrays have ours wait for them, and its stream ours."""
 
+    def stream(self, device):
+        return _cuda.own_stream(device), _cuda.own_stream(device)
+
+    def array(self, result, stream):
+        return _Ordered(result, stream)
+
+    def flags(self, result):
+        return result
+
+    def field(self, records, first, last, kind):
+        raise TypeError("results are arrays of a library that is unknown here: take `records`, rows of 32-bit words")
+
+
+class _Jax(_Stranger):
     def array(self, result, stream):
         return self.module.dlpack.from_dlpack(_Ordered(result, stream))
 
@@ -191,7 +205,7 @@ class _Jax(_Numpy):
 
     def field(self, records, first, last, kind):  # it has no arrays with gaps
         if kind == "int32":
-            return super().field(records, first, last, kind)
+            return records[..., first]
         words = records[..., first : last if last is not None else first + (2 if kind == "float64" else 1)]
         if kind == "float64":
             words = words.reshape(*words.shape[:-1], -1, 2)
@@ -220,22 +234,6 @@ class _Warp(_Numpy):
         return part
 
 
-class _Stranger(_Numpy):
-    """Arrays on a GPU of a library that is not known here: results have __dlpack__."""
-
-    def stream(self, device):
-        return _cuda.own_stream(device), _cuda.own_stream(device)
-
-    def array(self, result, stream):
-        return _Ordered(result, stream)
-
-    def flags(self, result):
-        return result
-
-    def field(self, records, first, last, kind):
-        raise TypeError("results are arrays of a library that is unknown here: take `records`, rows of 32-bit words")
-
-
 _forks = []  # as many as lead to this process
 os.register_at_fork(after_in_child=lambda: _forks.append(1))
 
@@ -250,7 +248,6 @@ def stream_of(library, device):
 
 
 _classes = {"numpy": _Numpy, "torch": _Torch, "cupy": _Cupy, "jax": _Jax, "jaxlib": _Jax, "warp": _Warp}
-_known = {}
 
 
 def library_of(array, device):
@@ -261,8 +258,7 @@ def library_of(array, device):
     return _library(root)
 
 
+@functools.cache
 def _library(root):
-    if root not in _known:
-        module = importlib.import_module(root.replace("jaxlib", "jax")) if root in _classes else None
-        _known[root] = _classes.get(root, _Stranger)(root, module)
-    return _known[root]
+    module = importlib.import_module(root.replace("jaxlib", "jax")) if root in _classes else None
+    return _classes.get(root, _Stranger)(root, module)
