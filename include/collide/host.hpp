@@ -169,8 +169,8 @@ class host {
                   }});
   }
 
-  /// The same. A thread takes some `shares` ranges, as it gets free: enough that none waits long for the others, and
-  /// few enough that memory is read in long stretches.
+  /// Each thread takes some `shares` ranges, as it gets free: enough that none waits long for the others, and few
+  /// enough that memory is read in long stretches.
   void share_out(std::size_t n, ranged_work const& whole) const {
     std::atomic<bool> failed{false};
     std::thread::id const caller = look_ != nullptr ? std::this_thread::get_id() : std::thread::id();

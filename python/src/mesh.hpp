@@ -109,8 +109,7 @@ class mesh : public called<Space> {
       return nb::make_tuple(report.message(), report.closed(), report.oriented(), parts);
     }
     auto const report = without_the_gil([&] { return collide::validate_surface(view_, tolerance, on_host()); });
-    return nb::make_tuple(report.message(),
-                          parts_of<collide::surface_problem>(report, collide::surface_problem_count));
+    return nb::make_tuple(report.message(), parts_of<collide::surface_problem>(report, collide::surface_problem_count));
   }
 
   /// Whether each edge has an even number of triangles, as far as a number of 64 bits tells; on a GPU it does not look.

@@ -1,4 +1,4 @@
-"""check.py code|links|examples|glossary|members|english|numbers: the README, the pages below docs/ and what they promise.
+"""check.py code|links|examples|glossary|members|english|numbers|lines: the README, the pages below docs/ and what they promise.
 
 code      The first block of C++ in the README is examples/minimal.cpp, and every other block of C++ or Python stands word for word in
           the file that the comment before it names (`<!-- from: FILE -->`). Pages that teach have no other C++.
@@ -12,11 +12,16 @@ members   The tables of members in docs/guide.md have all that the headers have,
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; the README is short; no docstring of include/ begins with
           a word of FOREIGN_BEGINNINGS, which name nothing, and no comment there says "but for". No sentence of a user's page begins with a word of NAMELESS, except a question.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
+lines     The Python package has no more than PACKAGE_LINES lines of C++ and Python that are no blanks, comments or docstrings.
+          `check.py lines each` prints those of each file.
 """
+import ast
+import io
 import pathlib
 import re
 import subprocess
 import sys
+import tokenize
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "bench/results/README.md")] + sorted((ROOT / "docs").rglob("*.md"))
@@ -65,6 +70,7 @@ FOREIGN = {
 LONGEST = 120
 README_WORDS = 850
 USER_WORDS = 25_000     # all pages of docs/ except api/ and development/
+PACKAGE_LINES = 2_900
 CHANGELOG_LINES = 60  # before the first release: its head says what its lines are
 
 # A sentence names its subject: none of these stands at its beginning.
@@ -256,7 +262,31 @@ def numbers():
                 yield f"{page}:{line}: {found!r} is not of bench/report"
 
 
-checks = {"numbers": numbers, "english": english, "code": code, "links": links, "examples": examples, "glossary": glossary,
+def lines_of_python(text):
+    space = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER)
+    tokens = [t for t in tokenize.generate_tokens(io.StringIO(text).readline) if t.type not in space]
+    lines = {line for t in tokens for line in range(t.start[0], t.end[0] + 1)}
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            lines -= set(range(node.lineno, node.end_lineno + 1))
+    return len(lines)
+
+
+def lines_of_cpp(text):
+    text = re.sub(r'("(?:\\.|[^"\\\n])*")|//[^\n]*|/\*.*?\*/', lambda match: match[1] or "", text, flags=re.S)
+    return sum(1 for line in text.splitlines() if line.strip())
+
+
+def lines():
+    files = sorted([*(ROOT / "python" / "package").rglob("*.py"), *(ROOT / "python" / "src").iterdir()])
+    found = {path: (lines_of_python if path.suffix == ".py" else lines_of_cpp)(path.read_text()) for path in files}
+    if sys.argv[2:] == ["each"]:
+        print("\n".join(f"{count:5} {path.relative_to(ROOT)}" for path, count in found.items()))
+    if sum(found.values()) > PACKAGE_LINES:
+        yield f"python/: {sum(found.values())} lines, more than {PACKAGE_LINES}"
+
+
+checks = {"lines": lines, "numbers": numbers, "english": english, "code": code, "links": links, "examples": examples, "glossary": glossary,
           "members": members}
 problems = list(checks[sys.argv[1]]())
 print("\n".join(problems) or "fine")

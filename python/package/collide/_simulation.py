@@ -183,7 +183,7 @@ class Simulation:
         simulation = self._simulation
         while not getattr(simulation, function)(self._stream(), *arguments):
             simulation = self._made()
-        self._simulation = simulation
+        self._simulation, self._is_set = simulation, True
 
     def __reduce__(self):
         state = None
@@ -224,7 +224,6 @@ class Simulation:
         velocities = of_list(velocities, "velocities", dtype)
         self._library = library_of(centres, self._device)
         self._replace("set", centres, radius, velocities, whole("capacity", capacity, 0, 2**32 - 2))
-        self._is_set = True
 
     def set_clumps(self, shapes: ClumpShape | Iterable[ClumpShape], centres: Any, rotations: Any = (1, 0, 0, 0),
                    velocities: Any = (0, 0, 0), angular_velocities: Any = (0, 0, 0), *, shape: Any = 0, scale: Any = 1,
@@ -251,7 +250,6 @@ class Simulation:
         refuse(wrong, "shape", f"expected whole numbers from 0 to {len(shapes) - 1}")
         self._replace("set_clumps", [n for s in shapes for n in s._numbers], numpy.hstack(parts).ravel().tolist(),
                       whole("waiting", waiting, 0, len(x)))
-        self._is_set = True
 
     def step(self, dt: float) -> None:
         """Advances by the time dt, above 0."""
@@ -403,7 +401,6 @@ class Simulation:
         path = _path(path)
         self._with_bookkeeping()
         self._replace("load", path)
-        self._is_set = True
 
     def __repr__(self):
         return f"<collide.Simulation: {len(self)} particles, {', '.join(e.name for e in self.effects)}>"
