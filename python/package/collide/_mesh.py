@@ -211,6 +211,7 @@ class Mesh:
         self._library = library_of(vertices, self._device)
         module = module_for(self._device, "vertices")
         self._is_wide = _is_wide(vertices)
+        self._dtype = "float64" if self._is_wide else "float32"
         self._threads = how_many_threads(threads)
         make = module.MeshDouble if self._is_wide else module.MeshFloat
         self._bodies = _parts(bodies)
@@ -461,10 +462,6 @@ class Mesh:
     def _stream(self):
         return stream_of(self._library, self._device)
 
-    @property
-    def _dtype(self):
-        return "float64" if self._is_wide else "float32"
-
     def _query(self, kind, what, centres, radius, displacements, precision, order="unspecified", capacity=None, poses=None,
                out=None):
         """What spheres touch."""
@@ -472,9 +469,9 @@ class Mesh:
         is_sorted = choice("order", order, ORDERS) == "canonical"
         if capacity is not None:
             capacity = whole("capacity", capacity, 0, 2**63 - 1)
-        given = {"centres": centres, "radius": radius, "displacements": displacements}
-        centres, *asked = (of_list(array, name, self._dtype) for name, array in given.items())
-        return self._ask(self._mesh.query, kind, what, centres, (*asked, precision), poses, out, is_sorted, capacity)
+        centres, radius = of_list(centres, "centres", self._dtype), of_list(radius, "radius", self._dtype)
+        asked = radius, of_list(displacements, "displacements", self._dtype), precision
+        return self._ask(self._mesh.query, kind, what, centres, asked, poses, out, is_sorted, capacity)
 
     def _search(self, kind, what, points, number, max_distance, poses, out):
         """What is near points; ``number`` is k, or beta of winding numbers."""

@@ -11,7 +11,7 @@ import numpy
 
 from . import _build
 from ._arrays import CUDA, library_of, module_for, of_list, stream_of, table
-from ._mesh import PRECISIONS, Array, Mesh, how_many_threads
+from ._mesh import PRECISIONS, Array, Mesh, Precision, how_many_threads
 from ._clumps import ClumpShape
 from ._errors import choice, real, refuse, shown, whole
 from .effects import Effect, Vector, _numbers
@@ -127,7 +127,7 @@ class Simulation:
     """
 
     def __init__(self, mesh: Mesh, effects: Iterable[Effect], *, bodies: Iterable[Body] = (), swept: bool = False,
-                 precision: str = "exact", threads: int = 0) -> None:
+                 precision: Precision = "exact", threads: int = 0) -> None:
         _check_mesh(mesh)
         self.effects = _listed("effects", effects, Effect, "collide.gravity()")
         names = [effect.name for effect in self.effects]
