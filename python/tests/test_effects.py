@@ -260,7 +260,7 @@ def test_own_law_among_those_of_the_library():
     (lambda: collide.granular_contact(granular.mindlin(), granular.hertz()), ValueError, "normal: mindlin is no law of this part, but of tangential"),
     (lambda: collide.granular_contact(granular.none()), ValueError, "normal: none is no law of this part"),
     (lambda: granular.materials(granular.Solid("soft"), granular.SurfacePair()), TypeError, "solids: expected numbers"),
-    (lambda: granular.marshall(granular.mindlin()), ValueError, "rolling: mindlin is no law of rolling"),
+    (lambda: granular.marshall(granular.mindlin()), ValueError, "rolling: mindlin is no law of this part, but of tangential"),
     (lambda: granular.torsion(1), TypeError, r"rolling: expected a law such as collide\.granular\.epsd\(\), got 1"),
     (lambda: granular.mindlin(damping="some"), ValueError, "damping: is 'some', expected 'none', 'of_tangent' or 'of_normal'"),
     (lambda: granular.mindlin(test=1), ValueError, "test: is 1, expected 'spring'"),

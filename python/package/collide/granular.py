@@ -13,6 +13,7 @@ from .effects import Effect, Law, _describes, _numbers
 
 Damping = Literal["none", "of_tangent", "of_normal"]
 Test = Literal["spring", "spring_and_dashpot"]
+_EXAMPLES = {"normal": "hertz", "tangential": "mindlin", "rolling": "epsd", "cohesion": "sjkr"}
 
 
 @_describes(Law, "effects/granular/linear", part="normal")
@@ -89,7 +90,8 @@ def epsd2(turns_about_normal: bool = False) -> Law:
 def _law(part, law):
     """A law that may be this part of granular contact; `none` in place of None."""
     law = none() if law is None else law
-    refuse(not isinstance(law, Law), part, f"expected a law such as collide.granular.hertz(), got {shown(law)}", TypeError)
+    expected = f"expected a law such as collide.granular.{_EXAMPLES[part]}(), got {shown(law)}"
+    refuse(not isinstance(law, Law), part, expected, TypeError)
     wrong = law._part not in ("", part) or (law.name, part) == ("none", "normal")
     refuse(wrong, part, f"{law.name} is no law of this part" + (f", but of {law._part}" if law._part else ""))
     return law
