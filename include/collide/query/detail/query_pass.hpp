@@ -76,7 +76,7 @@ template <class Index, class S>
 using index_for_each_on_ray = decltype(std::declval<Index const&>().ref().for_each_on_ray(
     std::declval<vec3<S> const&>(), std::declval<bool (&)(id)>()));
 
-/// Where points are whose search goes on beyond the box of a mesh: everywhere, unless the search functor tells.
+/// The box of the points whose search goes on beyond the box of a mesh: everything, unless the search functor tells.
 template <class F>
 struct searched_by {
   F const& f;
