@@ -49,8 +49,8 @@ struct grid_or_tree_ref : bucket_ref<S> {
 /// long as no index has been made; that follows from the numbers of triangles and spheres alone, by the measured costs
 /// of the space (bench/results/README.md). `bucket` wins for all else, but on the host for some meshes of long thin
 /// triangles, where `bvh` does: if most of the boxes of 128 triangles is empty, it counts how many of these triangles,
-/// and how many would be candidates in the cells that `bucket` plans, up to 128 of the spheres touch; the first queries
-/// ask so, then every 16th, and where there are twice or half as many spheres. After `build`
+/// and how many would be candidates in the cells that `bucket` plans, up to 128 of the spheres touch; the first query
+/// asks so, then every 16th, and where there are twice or half as many spheres. After `build`
 /// with a radius it is one of these two. On a device it is never `bvh`.
 ///
 /// The same calls always go the same way, and the pairs are the same either way. It is chosen by the
