@@ -81,7 +81,7 @@ struct find_inside {
     to[i] = parity_of(s.centre, mesh, search).inside() ? 1 : 0;
   }
 
-  aabb<float> searched(aabb<float> mesh) const {
+  aabb<float> searched_box(aabb<float> mesh) const {
     mesh.lower[2] = -std::numeric_limits<float>::infinity();
     return mesh;
   }

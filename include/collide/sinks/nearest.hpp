@@ -104,6 +104,16 @@ struct find_nearest {
     to[i] = found;
     if (found.triangle != no_id && s.radius != 0) to[i].distance -= s.radius;
   }
+
+  /// As of points; spheres may reach it from farther away.
+  aabb<float> searched_box(aabb<float> mesh) const {
+    auto const reach = static_cast<float>(min(max_distance, S(std::numeric_limits<float>::max())));
+    for (int k = 0; k < 3; ++k) {
+      mesh.lower[k] -= reach;
+      mesh.upper[k] += reach;
+    }
+    return mesh;
+  }
 };
 
 /// Search functor: which triangle is nearest, and which foot.
@@ -129,16 +139,6 @@ struct measure_nearest_foot {
     vec3<double> direction;
     nearest.set(i, s,
                 exact_nearest_search<S>::result_of(nearest.to[i], mesh, s.centre, nearest.reach_of(s), direction));
-  }
-
-  /// As of points; spheres may reach it from farther away.
-  aabb<float> searched(aabb<float> mesh) const {
-    auto const reach = static_cast<float>(min(max_distance, S(std::numeric_limits<float>::max())));
-    for (int k = 0; k < 3; ++k) {
-      mesh.lower[k] -= reach;
-      mesh.upper[k] += reach;
-    }
-    return mesh;
   }
 };
 

@@ -82,11 +82,11 @@ struct searched_by {
   F const& f;
 
   template <class G>
-  using call = decltype(std::declval<G const&>().searched(aabb<float>{}));
+  using call = decltype(std::declval<G const&>().searched_box(aabb<float>{}));
 
   aabb<float> operator()([[maybe_unused]] aabb<float> const& mesh) const {
     if constexpr (is_valid<call, F>) {
-      return f.searched(mesh);
+      return f.searched_box(mesh);
     } else {
       constexpr float far = std::numeric_limits<float>::infinity();
       return {{-far, -far, -far}, {far, far, far}};
