@@ -77,6 +77,8 @@ class k_nearest_search {
 /// Search functor of `k_nearest` for each sphere.
 template <class S, class Precision>
 struct find_k_nearest {
+  static constexpr int min_blocks = 3;
+
   S max_distance;
   int k;
   nearest_triangle<S>* to;

@@ -130,12 +130,18 @@ struct mesh_search {
 template <class F>
 using search_passes = std::enable_if_t<!std::is_void<typename F::search_pass>::value>;
 
+/// How many blocks of a search a processor should hold: the functor's `min_blocks`, or 12. Decisions in integers need
+/// more registers and are rare, so more resident threads gain more.
+template <class F, class = void>
+inline constexpr int min_blocks_of_search = 12;
+template <class F>
+inline constexpr int min_blocks_of_search<F, std::enable_if_t<(F::min_blocks > 0)>> = F::min_blocks;
+
 /// Kernel functor of `for_each` over spheres.
 template <class S, class Ref, class F>
 struct search_of_sphere {
-  /// Decisions in integers need more registers and are rare: more resident threads gain more.
   template <class>
-  static constexpr int min_blocks_per_sm = 12;
+  static constexpr int min_blocks_per_sm = min_blocks_of_search<F>;
 
   Ref ref;
   mesh_view<S> mesh;
