@@ -113,8 +113,8 @@ struct parts_of {
   std::size_t n, count, share;
 
   template <class Space>
-  parts_of(Space const& space, std::size_t n)
-      : n{n},
+  parts_of(Space const& space, std::size_t size)
+      : n{size},
         count{std::min({n / min_size + 1, space.saturating_blocks(), max_count})},
         share{(n + count - 1) / count} {}
 

@@ -414,8 +414,8 @@ struct plan_grid {
   /// About how many spheres the grid serves.
   template <class Scratch>
   COLLIDE_HD_INLINE float spheres_served(Scratch const& s) const {
-    float const spheres = request.spheres + request.costs.waiting;
-    return spheres * static_cast<float>(max(s.distances.sampled, 1u)) / pair_distances::spheres;
+    float const weighed = request.spheres + request.costs.waiting;
+    return weighed * static_cast<float>(max(s.distances.sampled, 1u)) / pair_distances::spheres;
   }
 
   COLLIDE_HD void set_levels(grid<S>& g, grid_header<S> planned, cell_choice const& chosen, S extent,
