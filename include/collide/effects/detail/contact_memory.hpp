@@ -355,7 +355,7 @@ class surface_memory {
     }
     return saved;
   }
-  /// After `clear`. May wait.
+  /// May wait.
   template <class Space>
   void restore_contacts(Space& space, saved_contacts<S> const& saved) {
     std::size_t const n = saved.counts.size();
@@ -363,6 +363,8 @@ class surface_memory {
     std::vector<std::uint8_t> const counts(saved.counts.begin(), saved.counts.end());
     std::vector<surface_record<S, List>> records(are_few_ ? 0 : max_contacts * n);
     if (are_few_) {
+      used_ = 0;
+      std::fill_n(rows_.data(), rows_.capacity(), none);
       for (std::size_t i = 0; i < n; ++i)
         if (counts[i] != 0) rows_.data()[i] = used_++;
       records_.reserve(space.resource(), max_contacts * used_);
