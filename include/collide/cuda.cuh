@@ -310,6 +310,7 @@ class cuda : public detail::cuda_space {
 /// A thread that is alone with the candidates of its spheres is waited for.
 template <>
 struct bucket_tuning<cuda> : device_bucket_tuning {
+  /// In nanoseconds; only the ratios count.
   static constexpr bucket_costs costs{0.12f, 0.004f, 0.06f, 0.04f, 7, 0, 0, 524288};
 };
 
