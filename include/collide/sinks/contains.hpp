@@ -81,6 +81,7 @@ struct find_inside {
     to[i] = parity_of(s.centre, mesh, search).inside() ? 1 : 0;
   }
 
+  /// The box of the points whose ray along +z may meet a mesh in a box.
   aabb<float> searched_box(aabb<float> mesh) const {
     mesh.lower[2] = -std::numeric_limits<float>::infinity();
     return mesh;

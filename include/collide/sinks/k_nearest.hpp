@@ -77,7 +77,7 @@ class k_nearest_search {
 /// Search functor of `k_nearest` for each sphere.
 template <class S, class Precision>
 struct find_k_nearest {
-  static constexpr int min_blocks = 3;
+  static constexpr int min_blocks = 3;  ///< with fewer registers a search takes longer
 
   S max_distance;
   int k;

@@ -105,7 +105,8 @@ struct find_nearest {
     if (found.triangle != no_id && s.radius != 0) to[i].distance -= s.radius;
   }
 
-  /// As of points; spheres may reach it from farther away.
+  /// The box of the points that search beyond the box of a mesh. Spheres, which may do so from farther away, count as
+  /// points: they are only later in the order.
   aabb<float> searched_box(aabb<float> mesh) const {
     auto const reach = static_cast<float>(min(max_distance, S(std::numeric_limits<float>::max())));
     for (int k = 0; k < 3; ++k) {

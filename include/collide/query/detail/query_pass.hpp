@@ -126,7 +126,8 @@ struct mesh_search {
   }
 };
 
-/// A search functor that is two kernels where many threads are at work: its members `search_pass` and `measure_pass`.
+/// A search functor of which a device makes two kernels: its members `search_pass`, a search functor, and
+/// `measure_pass`, a functor of `for_each` over spheres.
 template <class F>
 using search_passes = std::enable_if_t<!std::is_void<typename F::search_pass>::value>;
 
