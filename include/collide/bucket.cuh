@@ -51,8 +51,8 @@ struct bucket {
 namespace detail {
 
 /// Which way round a query goes: spheres look for triangles in the cells, or triangles look for spheres that are sorted
-/// into the cells.
-enum class query_order { sphere_major, triangle_major };
+/// into the cells; `cheaper` is the first unless the spheres have many triangles in their cells.
+enum class query_order { sphere_major, triangle_major, cheaper };
 
 /// The plan of a query.
 template <class S>
@@ -128,6 +128,11 @@ class bucket::index {
   void fill(Space& space, [[maybe_unused]] Spheres const& spheres) {
     ++queries_;
     if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (order_ == detail::query_order::cheaper) {
+        cells_.fill(space);
+        order_ = prefers_cells(spheres) ? detail::query_order::sphere_major : detail::query_order::triangle_major;
+        if (!sorts_spheres()) return;
+      }
       if (sorts_spheres()) return bins_.sort(space, spheres);
     }
     cells_.fill(space);
@@ -181,8 +186,21 @@ class bucket::index {
   }
 
  private:
-  /// So many queries of few spheres go through all triangles; then these are entered.
-  static constexpr std::size_t few_queries = 2;
+  /// True if the triangles are entered for spheres of which there are few: that takes as long as 3 to 25 queries in
+  /// which all triangles look for spheres, and pays where few come again and again; after two queries of a 128th as
+  /// many spheres as triangles, after 32 of an eighth.
+  bool enters_triangles(std::size_t spheres) const {
+    return queries_ >= 2 && spheres <= mesh_.size() / 8 && queries_ * mesh_.size() >= 256 * spheres;
+  }
+
+  /// True if spheres that look for triangles, which are entered, take less time than the other way round.
+  template <class Spheres>
+  bool prefers_cells(Spheres const& spheres) const {
+    constexpr float per_sphere_ns = 15, per_candidate_ns = 100, per_triangle_ns = 20, per_pair_ns = 8;  // of the host
+    auto const n = static_cast<float>(spheres.size()), candidates = n * cells_.mean_candidates(spheres);
+    return per_sphere_ns * n + per_candidate_ns * candidates <
+           per_triangle_ns * static_cast<float>(mesh_.size()) + per_pair_ns * candidates;
+  }
 
   /// True if spheres can be sorted into the cells: what that takes is not part of a budget.
   template <class Space>
@@ -200,11 +218,11 @@ class bucket::index {
     detail::query_plan<S> plan = plan_grids(space, spheres, cells_.grids().asked.whole_boxes);
     bool const has_grids = plan.makes_grids || cells_.grids().count != 0;
     if (has_grids && can_bin<Space>(options, spheres.size())) {
-      // entering the triangles pays where very few spheres come again and again (docs/development/design.md)
-      if (queries_ < few_queries || spheres.size() >= mesh_.size() / 128) {
+      if (!enters_triangles(spheres.size())) {
         plan.order = detail::query_order::triangle_major;
         plan.makes_grids = plan.makes_grids || spheres.size() / 8 > cells_.grids().spheres;
       } else {
+        plan.order = detail::query_order::cheaper;
         plan.spheres = mesh_.size();
         plan.makes_grids = plan.makes_grids || cells_.grids().spheres < plan.spheres;
       }

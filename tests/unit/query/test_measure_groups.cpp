@@ -134,3 +134,44 @@ TEST_CASE("groups of triangles: the host keeps no box of each triangle, unless f
     bytes_of_order = 36 * n;  // of the next one, for groups along a curve
   }
 }
+
+TEST_CASE("few spheres that come again: triangles are entered as soon as that pays") {
+  auto const scene = io::study_scene(30000, 20000);
+  std::size_t const n = scene.triangle_count();
+  std::vector<float> const vertices(scene.vertices.begin(), scene.vertices.end()),
+      centres(scene.centres.begin(), scene.centres.end());
+  auto const mesh = collide::indexed_mesh(vertices.data(), vertices.size() / 3, scene.corners.data(), n);
+  auto const query = [&](collide::detector<collide::bucket>& detector, std::size_t count) {
+    return detector.query(collide::spheres_xyz(centres.data(), count, 3.0f), collide::pairs(collide::order::canonical))
+        .to_host();
+  };
+  // the first query, counted from 1, that has entered them; 0 if none of 40 has
+  auto const first_to_enter = [&](std::size_t count) {
+    io::counting_resource memory(std::pmr::new_delete_resource());
+    collide::detector<collide::bucket> detector(collide::host(1, &memory));
+    detector.build(mesh);
+    auto const pairs = query(detector, count);
+    std::size_t const before = memory.in_use;
+    for (std::size_t k = 2; k <= 40; ++k) {
+      CHECK((query(detector, count) == pairs));
+      if (memory.in_use > before + 4 * n) return k;
+    }
+    return std::size_t{0};
+  };
+  CHECK(first_to_enter(n / 4) == 0);
+  CHECK(first_to_enter(n / 8) == 33);
+  CHECK(first_to_enter(n / 32) == 9);
+  CHECK(first_to_enter(n / 200) == 3);
+  collide::detector<collide::bucket> both(collide::host(1));
+  both.build(mesh);
+  auto const all = query(both, n), few = query(both, n / 16);
+  for (int k = 0; k < 20; ++k) {
+    CHECK((query(both, n) == all));
+    CHECK((query(both, n / 16) == few));
+  }
+  // with many triangles near each: they are entered, and then look for the spheres as before
+  auto const large = collide::spheres_xyz(centres.data(), 100, 60.0f);
+  auto const pairs = both.query(large, collide::pairs(collide::order::canonical)).to_host();
+  CHECK(pairs.size() > 10000);
+  for (int k = 0; k < 20; ++k) CHECK((both.query(large, collide::pairs(collide::order::canonical)).to_host() == pairs));
+}

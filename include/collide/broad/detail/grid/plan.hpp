@@ -254,6 +254,14 @@ struct plan_grid {
     return g;
   }
 
+  /// How many spheres are sampled: by one thread not so many that this takes longer than a query of few spheres.
+  template <class Block>
+  COLLIDE_HD std::uint32_t spheres_asked() const {
+    if (Block::num_threads > 1) return pair_distances::spheres;
+    float const work = (request.spheres + 2 * static_cast<float>(mesh.size())) / 256;
+    return static_cast<std::uint32_t>(min(max(work, 4.f), static_cast<float>(pair_distances::spheres)));
+  }
+
   template <class Block, class Scratch>
   COLLIDE_HD_INLINE void sample(Scratch& s, std::uint32_t i) const {
     std::size_t const t = mesh.size() * i / pair_distances::triangles;
@@ -270,10 +278,10 @@ struct plan_grid {
         Block::num_threads > 1 ? pair_distances::triangles / 4 : pair_distances::triangles;
     constexpr std::uint32_t parts = pair_distances::triangles / pairs_of_sphere;
     block.for_each_thread([&](int thread_rank) {
-      for (auto j = static_cast<std::uint32_t>(thread_rank); j < parts * pair_distances::spheres;
+      for (auto j = static_cast<std::uint32_t>(thread_rank); j < parts * spheres_asked<Block>();
            j += Block::num_threads) {
         if (spheres.size() == 0) break;
-        auto const moved = spheres[spheres.size() * (j / parts) / pair_distances::spheres];
+        auto const moved = spheres[spheres.size() * (j / parts) / spheres_asked<Block>()];
         sphere<S> const here = sphere_on_path(moved, static_cast<S>(j / parts * 37 % 64) / S(63));  // all along
         if (!(here.radius <= reach && here.radius > above) || !is_finite(here.centre)) continue;
         if (j % parts == 0) {
@@ -332,7 +340,7 @@ struct plan_grid {
       for (int c = 0; c < size_classes; ++c) all += s.classes[c];
       share_of_pairs const share(s.distances);
       level_cost cost{request.costs,
-                      spheres_served(s),
+                      spheres_served<Block>(s),
                       static_cast<float>(s.planned.dilation / s.extent),
                       s.distances.mean_path(),
                       share,
@@ -412,10 +420,10 @@ struct plan_grid {
   }
 
   /// About how many spheres the grid serves.
-  template <class Scratch>
+  template <class Block, class Scratch>
   COLLIDE_HD_INLINE float spheres_served(Scratch const& s) const {
     float const weighed = request.spheres + request.costs.waiting;
-    return weighed * static_cast<float>(max(s.distances.sampled, 1u)) / pair_distances::spheres;
+    return weighed * static_cast<float>(max(s.distances.sampled, 1u)) / static_cast<float>(spheres_asked<Block>());
   }
 
   COLLIDE_HD void set_levels(grid<S>& g, grid_header<S> planned, cell_choice const& chosen, S extent,
