@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <type_traits>
 
 #include <collide/broad/detail/bucket/cell_index.hpp>
 #include <collide/broad/detail/bucket/sorted_spheres.hpp>
@@ -127,15 +128,14 @@ class bucket::index {
   template <class Space, class Spheres>
   void fill(Space& space, [[maybe_unused]] Spheres const& spheres) {
     ++queries_;
+    if (!sorts_spheres()) cells_.fill(space);
     if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (order_ == detail::query_order::cheaper) {
-        cells_.fill(space);
-        order_ = prefers_cells(spheres) ? detail::query_order::sphere_major : detail::query_order::triangle_major;
-        if (!sorts_spheres()) return;
+      if constexpr (std::is_same<Spheres, sphere_view<S>>::value) {
+        if (order_ == detail::query_order::cheaper && !prefers_cells(spheres))
+          order_ = detail::query_order::triangle_major;
       }
-      if (sorts_spheres()) return bins_.sort(space, spheres);
+      if (sorts_spheres()) bins_.sort(space, spheres);
     }
-    cells_.fill(space);
   }
 
   /// Makes the grids that spheres which move need, and enters the triangles or sorts the spheres.
