@@ -369,8 +369,7 @@ class simulation {
 template <class Detector, class... Effect>
 double largest_time_step(simulation<Detector, Effect...> const& of) {
   double longest = std::numeric_limits<double>::infinity();
-  ((longest =
-        detail::min(longest, detail::longest_step_of(of.template effect<Effect>(), of.internals().smallest) / 4)),
+  ((longest = detail::min(longest, detail::longest_step_of(of.template effect<Effect>(), of.internals().smallest) / 4)),
    ...);
   return longest;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 #include <istream>
 #include <ostream>
 #include <string>
@@ -31,6 +32,13 @@ std::string type_name() {
   std::string const name = status == 0 ? readable : typeid(T).name();
   std::free(readable);
   return name;
+}
+
+/// The names that functions return, with commas.
+inline std::string list_of_names(std::initializer_list<std::string (*)()> names) {
+  std::string list;
+  for (auto const name : names) list += (list.empty() ? "" : ", ") + name();
+  return list;
 }
 
 /// The names of the blocks that an effect's parameters and a column have in a checkpoint.
@@ -102,8 +110,7 @@ void write_parameters([[maybe_unused]] checkpoint_writer& to, [[maybe_unused]] E
 }
 template <class E>
 void read_parameters([[maybe_unused]] checkpoint_reader& from, [[maybe_unused]] saved_bytes& to) {
-  if constexpr (has_bytes<E>)
-    to.push_back(from.block<unsigned char>(parameters_name<E>(), size_of_parameters<E>()));
+  if constexpr (has_bytes<E>) to.push_back(from.block<unsigned char>(parameters_name<E>(), size_of_parameters<E>()));
 }
 /// Takes the next of the parameters.
 template <class E>
@@ -287,7 +294,7 @@ class checkpoint {
   template <class State>
   void restore_rest(State& s, double const* clock) const {
     if constexpr (State::has_begin_step) s.space.copy_from_host(s.particles.time, clock, clock_size);
-    auto parameters = parameters_.begin();
+    [[maybe_unused]] auto parameters = parameters_.begin();
     (restore_parameters(parameters, s.effects.template of<Effect>()), ...);
     s.time = numbers_.time;
     s.next_meeting = numbers_.meeting_between_steps();
@@ -321,9 +328,7 @@ class checkpoint {
   static void pass_types(Archive& archive) {
     archive.text("scalar", type_name<S>());
     archive.text("narrow phase", type_name<typename state_type::narrow_phase>());
-    std::string list;
-    ((list += (list.empty() ? "" : ", ") + type_name<Effect>()), ...);
-    archive.text("effects", list);
+    archive.text("effects", list_of_names({type_name<Effect>...}));
   }
 
   using remembered = typename simulated::effects_type::remembered;

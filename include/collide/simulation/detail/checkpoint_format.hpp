@@ -119,7 +119,7 @@ class checkpoint_reader {
     expect(name, n, sizeof(T));
     return elements<T>(name, n);
   }
-  /// The same of elements of any type, each of so many bytes.
+  /// The elements of the next block as bytes: `n` of any type, each of so many bytes.
   std::vector<unsigned char> block(std::string const& name, std::uint64_t n, std::size_t bytes) {
     expect(name, n, bytes);
     return elements<unsigned char>(name, n * bytes);

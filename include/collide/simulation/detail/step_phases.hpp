@@ -64,7 +64,7 @@ class step_phases {
      ...);
     (check_box_of<Effect>(), ...);
     if constexpr (effects_type::repeats) check_sides();
-    double const time = static_cast<double>(dt);
+    [[maybe_unused]] double const time = static_cast<double>(dt);
     (check_time_step(time, longest_step_of(effect<Effect>(), s_.smallest), s_.smallest), ...);
     if ((!effects_type::any_pair_contact || effects_type::has_clumps) && s_.effects.makes_only_where_free())
       throw error(
