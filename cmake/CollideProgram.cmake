@@ -41,7 +41,7 @@ set(COLLIDE_QUICK_OPTIONS -Og -DCOLLIDE_PLAIN_INLINE)
 # Of what most of these compile, half is Eigen, which nearly all headers of the library include: they have it precompiled.
 if(COLLIDE_QUICK_BUILD)
   file(CONFIGURE OUTPUT quick_eigen.cpp CONTENT "")
-  add_library(quick_eigen OBJECT ${CMAKE_CURRENT_BINARY_DIR}/quick_eigen.cpp)
+  add_library(quick_eigen OBJECT EXCLUDE_FROM_ALL ${CMAKE_CURRENT_BINARY_DIR}/quick_eigen.cpp)
   target_link_libraries(quick_eigen PRIVATE collide_options)
   target_compile_options(quick_eigen PRIVATE ${COLLIDE_QUICK_OPTIONS})
   target_precompile_headers(quick_eigen PRIVATE <Eigen/Core>)
