@@ -36,7 +36,11 @@ if(COLLIDE_WERROR)
 endif()
 
 # What takes longer to compile than what it computes takes in the tests: a third less with plain inline functions.
+# g++ collects its garbage from 500 MB on, which takes a sixteenth less.
 set(COLLIDE_QUICK_OPTIONS -Og -DCOLLIDE_PLAIN_INLINE)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  list(APPEND COLLIDE_QUICK_OPTIONS --param=ggc-min-heapsize=500000)
+endif()
 
 # Of what most of these compile, half is Eigen, which nearly all headers of the library include: they have it precompiled.
 if(COLLIDE_QUICK_BUILD)
