@@ -36,12 +36,26 @@ if(COLLIDE_WERROR)
 endif()
 
 # What takes longer to compile than what it computes takes in the tests: a third less with plain inline functions.
+# g++ collects its garbage from 500 MB on, which takes a sixteenth less.
 set(COLLIDE_QUICK_OPTIONS -Og -DCOLLIDE_PLAIN_INLINE)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  list(APPEND COLLIDE_QUICK_OPTIONS --param=ggc-min-heapsize=500000)
+endif()
+
+# Of what most of these compile, half is Eigen, which nearly all headers of the library include: they have it precompiled.
+if(COLLIDE_QUICK_BUILD)
+  file(CONFIGURE OUTPUT quick_eigen.cpp CONTENT "")
+  add_library(quick_eigen OBJECT EXCLUDE_FROM_ALL ${CMAKE_CURRENT_BINARY_DIR}/quick_eigen.cpp)
+  target_link_libraries(quick_eigen PRIVATE collide_options)
+  target_compile_options(quick_eigen PRIVATE ${COLLIDE_QUICK_OPTIONS})
+  target_precompile_headers(quick_eigen PRIVATE <Eigen/Core>)
+endif()
 
 # collide_quick_build(NAME): a target of that kind
 function(collide_quick_build name)
   if(COLLIDE_QUICK_BUILD)
     target_compile_options(${name} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:${COLLIDE_QUICK_OPTIONS}>")
+    target_precompile_headers(${name} REUSE_FROM quick_eigen)
   endif()
 endfunction()
 

@@ -79,22 +79,13 @@ class host {
   /// Runs `kernel` once for each of `blocks` blocks.
   template <class Kernel>
   void launch(std::size_t blocks, Kernel const& kernel) const {
-    using block_type = block<Kernel>;
-    run(blocks, [&](std::size_t first, std::size_t last) {
-      typename Kernel::template scratch<block_type> scratch;
-      for (std::size_t i = first; i < last; ++i) {
-        block_type here(i);
-        kernel(here, scratch);
-      }
-    });
+    share_out(blocks, {&kernel, blocks, run_blocks<Kernel>});
   }
 
   /// Calls f(i) for all i < n, from all threads; returns when all are done, and throws what f has thrown.
   template <class F>
   void for_each(std::size_t n, F const& f) const {
-    run((n + 1023) / 1024, [&](std::size_t first, std::size_t last) COLLIDE_AS_O3 {
-      for (std::size_t i = first * 1024; i < std::min(n, last * 1024); ++i) f(i);
-    });
+    share_out((n + 1023) / 1024, {&f, n, call_for_each<F>});
   }
 
   /// How many blocks keep all threads busy.
@@ -154,23 +145,29 @@ class host {
   }
 #endif
 
-  /// A loop's body, whatever its type: work(first, last).
-  struct ranged_work {
-    void const* of;
-    void (*call)(void const* of, std::size_t first, std::size_t last);
-  };
-
-  /// Calls work(first, last) for ranges that cover 0 .. n, from all threads; the first exception is passed on. How
-  /// ranges are shared out is compiled once for all loops.
-  template <class Work>
-  void run(std::size_t n, Work const& work) const {
-    share_out(n, {&work, [](void const* of, std::size_t first, std::size_t last) {
-                    (*static_cast<Work const*>(of))(first, last);
-                  }});
+  template <class Kernel>
+  static void run_blocks(void const* kernel, std::size_t first, std::size_t last, std::size_t) {
+    typename Kernel::template scratch<block<Kernel>> scratch;
+    for (std::size_t i = first; i < last; ++i) {
+      block<Kernel> here(i);
+      (*static_cast<Kernel const*>(kernel))(here, scratch);
+    }
+  }
+  template <class F>
+  COLLIDE_AS_O3 static void call_for_each(void const* f, std::size_t first, std::size_t last, std::size_t n) {
+    for (std::size_t i = first * 1024; i < std::min(n, last * 1024); ++i) (*static_cast<F const*>(f))(i);
   }
 
-  /// Each thread takes some `shares` ranges, as it gets free: enough that none waits long for the others, and few
-  /// enough that memory is read in long stretches.
+  /// A loop of `size`, whatever the type of its body: what it does for a range.
+  struct ranged_work {
+    void const* of;
+    std::size_t size;
+    void (*call)(void const* of, std::size_t first, std::size_t last, std::size_t size);
+  };
+
+  /// Calls the work for ranges that cover 0 .. n, from all threads; the first exception is passed on. How ranges are
+  /// shared out is compiled once for all loops. Each thread takes some `shares` ranges, as it gets free: enough that
+  /// none waits long for the others, and few enough that memory is read in long stretches.
   void share_out(std::size_t n, ranged_work const& whole) const {
     std::atomic<bool> failed{false};
     std::thread::id const caller = look_ != nullptr ? std::this_thread::get_id() : std::thread::id();
@@ -178,7 +175,7 @@ class host {
       std::size_t const part = look_ != nullptr ? 1 : last - first;
       for (; first < last && !failed; first += part) {
         if (look_ != nullptr && std::this_thread::get_id() == caller) look_();
-        whole.call(whole.of, first, std::min(last, first + part));
+        whole.call(whole.of, first, std::min(last, first + part), whole.size);
       }
     };
 #if defined(_OPENMP)

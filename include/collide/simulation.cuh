@@ -161,7 +161,7 @@ class simulation {
   /// `error` if there are more than 64 bodies, triangles not in the mesh or in two, or a motion is not finite.
   COLLIDE_COLD void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
     all_.bodies.check(bodies, mesh.size(), velocities);
-    (detail::check_walls_of<Effect>(all_.effects, all_.space, mesh.size(), bodies.size()), ...);
+    (detail::check_walls_of(all_.effects.template of<Effect>(), all_.space, mesh.size(), bodies.size()), ...);
     all_.mesh = {};
     all_.has_mesh = all_.is_pressing_known = false;
     detail::lookup_space<execution_space> there{all_.space};
@@ -369,8 +369,7 @@ class simulation {
 template <class Detector, class... Effect>
 double largest_time_step(simulation<Detector, Effect...> const& of) {
   double longest = std::numeric_limits<double>::infinity();
-  ((longest =
-        detail::min(longest, detail::longest_step_of<Effect>(of.internals().effects, of.internals().smallest) / 4)),
+  ((longest = detail::min(longest, detail::longest_step_of(of.template effect<Effect>(), of.internals().smallest) / 4)),
    ...);
   return longest;
 }

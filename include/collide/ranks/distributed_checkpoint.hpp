@@ -46,18 +46,12 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
       numbers.clock[clock_not_born] = static_cast<double>(born.not_born);
       format::begin(*to, numbers, from.part_.effects());
     });
-    format::for_each_column([&](auto column) {
-      using type = decltype(column);
-      exchange_buffer<column_element<type, S>> mine, all;
-      auto const values = from.template to_host<type>();
-      together(ranks, [&] {
-        mine.clear(ranks.size());
-        mine.items = values;
-        mine.counts[0] = values.size();
-      });
-      deliver(ranks, mine, all);
-      on_first([&] { format::template write_column<type>(*to, all.items); });
-    });
+    for (saved_column const& column : saved_columns<S>(from.local().state(), typename simulated::columns())) {
+      std::vector<unsigned char> values;
+      from.bring_home(column.data, column.bytes(), values);
+      bring_to_first(ranks, values);
+      on_first([&] { to->block(column.name(), values.data(), values.size() / column.element, column.element); });
+    }
     on_first([&] { format::end(*to, from.local()); });
     using part_type = typename simulated::part_type;
     if constexpr (part_type::remembers_pairs || part_type::remembers_surfaces) {
@@ -83,8 +77,8 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
     std::vector<std::uint64_t> starts;
     auto const begin_of = [&](std::uint64_t number) {  // a clump stays whole
       if constexpr (contains<typename simulated::columns, in_clump>) {
-        auto const& clump = found->template column<in_clump>();
-        auto const goes_on = [&] { return number > 0 && number < clump.size() && clump[number] != no_id; };
+        auto const* const clump = found->template column<in_clump>();
+        auto const goes_on = [&] { return number > 0 && number < found->numbers().places && clump[number] != no_id; };
         while (goes_on() && clump[number] == clump[number - 1]) --number;
       }
       return number;

@@ -157,34 +157,9 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   /// them those that effects have made. One after the other, the ranks' columns are that of one rank. Waits.
   template <class Column>
   std::vector<detail::column_element<Column, S>> to_host() {
-    using pair_of = collide::columns<global_number, Column>;
-    using row = detail::particle_row<S, pair_of>;
-    constexpr auto width = std::size_t(detail::column_layout<Column, S>::width);
-    detail::exchange_buffer<row> out, in;
-    std::vector<detail::column_element<Column, S>> found;
-    std::uint64_t const first = starts_.empty() ? 0 : starts_[static_cast<std::size_t>(ranks_.rank())];
-    check_sound();
-    together(ranks_, [&] {
-      if (!part_.is_set()) throw error("collide: simulation: to_host needs particles: call set before it");
-      std::vector<id> const numbers = part_.template on_host<global_number>();
-      detail::exchange_buffer<std::uint32_t> places;
-      detail::fill_exchange_buffer(places, ranks_.size(), [&](auto const& put) {
-        for (std::size_t i = 0; i < numbers.size(); ++i) put(home_of(numbers[i]), static_cast<std::uint32_t>(i));
-      });
-      part_.template pack<pair_of>(places.items, out.items);
-      out.counts = places.counts;
-    });
-    detail::deliver(ranks_, out, in);
-    together(ranks_, [&] {
-      found.resize(width * in.items.size());
-      for (row const& one : in.items) {
-        id number = 0;
-        std::memcpy(&number, one.bytes, sizeof number);
-        std::memcpy(found.data() + width * static_cast<std::size_t>(number - first), one.bytes + sizeof number,
-                    row::size - sizeof number);
-      }
-    });
-    return found;
+    std::vector<detail::column_element<Column, S>> values;
+    bring_home(local().template data<Column>(), detail::column_bytes<Column, S>, values);
+    return values;
   }
 
   /// Counts of the source on all ranks; see `birth_counts`. All ranks call it. Waits.
@@ -243,6 +218,19 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     std::vector<body_impulse> found;
     together(ranks_, [&] { found = mine.impulses(counts); });
     return found;
+  }
+
+  /// Brings a column, of so many bytes of each particle, to the ranks that have set these.
+  void bring_home(void const* column, std::size_t bytes, detail::any_vector const& values) {
+    std::vector<id> numbers;
+    std::vector<unsigned char> rows;
+    check_sound();
+    together(ranks_, [&] {
+      if (!part_.is_set()) throw error("collide: simulation: to_host needs particles: call set before it");
+      numbers = part_.template on_host<global_number>();
+      rows = detail::bytes_on_host(part_.space(), column, numbers.size() * bytes);
+    });
+    detail::bring_home(ranks_, starts_, numbers, rows, bytes, values);
   }
 
   /// Particles meet where they begin.
@@ -374,12 +362,6 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     return {several ? S(0) : largest_common,
             {several ? smallest_of_all : largest_common, ask(largest, has_say).second, S(0)},
             ask(widest, has_say).second};
-  }
-
-  /// The rank that has set a particle; the last has what effects make.
-  int home_of(id number) const {
-    auto const after = std::upper_bound(starts_.begin(), starts_.end(), std::uint64_t{number});
-    return std::min(static_cast<int>(after - starts_.begin()), ranks_.size()) - 1;
   }
 
   Ranks ranks_;

@@ -165,9 +165,13 @@ void together(Ranks const& ranks, F const& f) {
   if constexpr (std::is_same<Ranks, one_rank>::value) {
     f();
   } else {
-    detail::first_failure failure;
-    failure.attempt(f);
-    agree(ranks, failure.get());
+    std::exception_ptr failure;
+    try {
+      f();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    agree(ranks, failure);
   }
 }
 

@@ -2,14 +2,16 @@
 /// Saves a simulation to a file, and goes on from it in another process.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 #include <istream>
 #include <ostream>
 #include <string>
-#include <tuple>
+#include <type_traits>
 #include <typeinfo>
 #include <vector>
 
@@ -30,6 +32,96 @@ std::string type_name() {
   std::string const name = status == 0 ? readable : typeid(T).name();
   std::free(readable);
   return name;
+}
+
+/// The names that functions return, with commas.
+inline std::string list_of_names(std::initializer_list<std::string (*)()> names) {
+  std::string list;
+  for (auto const name : names) list += (list.empty() ? "" : ", ") + name();
+  return list;
+}
+
+/// The names of the blocks that an effect's parameters and a column have in a checkpoint.
+template <class E>
+std::string parameters_name() {
+  return "parameters of " + type_name<E>();
+}
+template <class C>
+std::string column_name() {
+  return "column " + type_name<C>();
+}
+
+/// A column of particles in memory of a space, whatever the type of its elements.
+struct saved_column {
+  std::string (*name)();  ///< of its block
+  unsigned char* data;
+  std::size_t element;  ///< bytes of one
+  std::size_t width;    ///< elements of a particle
+
+  std::size_t bytes() const { return element * width; }  ///< of a particle
+};
+template <class S, class State, class... C>
+std::array<saved_column, sizeof...(C)> saved_columns(State const& state, columns<C...>) {
+  return {{{column_name<C>, reinterpret_cast<unsigned char*>(state.at(C{})), sizeof(column_element<C, S>),
+            std::size_t(column_layout<C, S>::width)}...}};
+}
+
+using saved_bytes = std::vector<std::vector<unsigned char>>;
+
+/// An effect's parameters are bytes in a checkpoint if it has some, and does not say otherwise.
+template <class E>
+constexpr bool has_bytes = [] {
+  static_assert(std::is_trivially_destructible<E>::value || !saves_parameters<E>,
+                "collide: save and load: the parameters of this effect are no plain values: what they own cannot be "
+                "saved; give it a member static constexpr bool saves_parameters = false, and set them after load");
+  return saves_parameters<E> && !std::is_empty<E>::value;
+}();
+
+/// The bytes of an effect's parameters, or of their parts if there is padding between them.
+template <class E>
+std::vector<unsigned char> bytes_of_parameters(E const& effect) {
+  std::vector<unsigned char> bytes;
+  for_each_part_of(const_cast<E&>(effect), [&](auto const& part) {  // reads them only
+    std::size_t const before = bytes.size();
+    bytes.resize(before + sizeof part);
+    std::memcpy(bytes.data() + before, &part, sizeof part);
+  });
+  return bytes;
+}
+struct no_part {
+  template <class Part>
+  void operator()(Part&) const {}
+};
+template <class E>
+std::size_t size_of_parameters() {
+  if constexpr (is_valid<for_each_part_call, E, no_part>) {
+    return bytes_of_parameters(E()).size();
+  } else {
+    return sizeof(E);
+  }
+}
+
+template <class E>
+void write_parameters([[maybe_unused]] checkpoint_writer& to, [[maybe_unused]] E const& effect) {
+  if constexpr (has_bytes<E>) {
+    auto const bytes = bytes_of_parameters(effect);
+    to.block(parameters_name<E>(), bytes.data(), bytes.size());
+  }
+}
+template <class E>
+void read_parameters([[maybe_unused]] checkpoint_reader& from, [[maybe_unused]] saved_bytes& to) {
+  if constexpr (has_bytes<E>) to.push_back(from.block<unsigned char>(parameters_name<E>(), size_of_parameters<E>()));
+}
+/// Takes the next of the parameters.
+template <class E>
+void restore_parameters([[maybe_unused]] saved_bytes::const_iterator& next, [[maybe_unused]] E& effect) {
+  if constexpr (has_bytes<E>) {
+    unsigned char const* from = (next++)->data();
+    for_each_part_of(effect, [&](auto& part) {
+      std::memcpy(static_cast<void*>(&part), from, sizeof part);
+      from += sizeof part;
+    });
+  }
 }
 
 /// The numbers of a simulation besides its columns and the parameters of its effects.
@@ -97,8 +189,11 @@ class checkpoint {
     checkpoint_writer to(stream, name);
     numbers_type numbers(s, s.particles.size, s.particles.placed);
     begin(to, numbers, s.effects);
-    for_each_column(
-        [&](auto column) { write_column<decltype(column)>(to, from.template to_host<decltype(column)>()); });
+    check_contacts(s);
+    std::size_t const n = s.particles.size;
+    for (saved_column const& column : saved_columns<S>(s.particles, column_list()))
+      to.block(column.name(), bytes_on_host(s.space, column.data, n * column.bytes()).data(), n * column.width,
+               column.element);
     end(to, from);
     saved_contacts<S> pairs, surfaces;
     if constexpr (remembers_pairs) pairs = contacts_between_particles(s);
@@ -118,22 +213,13 @@ class checkpoint {
   static void begin(checkpoint_writer& to, numbers_type& numbers, Effects const& effects) {
     pass_types(to);
     numbers.pass(to);
-    (write_parameters<Effect>(to, effects), ...);
-  }
-  template <class F>
-  static void for_each_column(F const& f) {
-    for_each_in(column_list(), f);
-  }
-  template <class C>
-  static void write_column(checkpoint_writer& to, std::vector<column_element<C, S>> const& values) {
-    to.block(column_name<C>(), values.data(), values.size());
+    (write_parameters(to, effects.template of<Effect>()), ...);
   }
   template <class Simulation>
   static void end(checkpoint_writer& to, Simulation const& from) {
     if constexpr (state_type::has_bodies) {
       from.bodies().for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
-        std::vector<unsigned char> copy(n * sizeof(*elements));
-        from.space().copy_to_host(copy.data(), reinterpret_cast<unsigned char const*>(elements), copy.size());
+        auto const copy = bytes_on_host(from.space(), elements, n * sizeof(*elements));
         to.block(name, copy.data(), copy.size());
       });
     }
@@ -158,8 +244,9 @@ class checkpoint {
     }
     if (numbers_.places >= no_id) from.refuse("places", "a simulation has at most 2^32 - 2 particles");
     if (numbers_.placed > numbers_.places) from.refuse("placed", "more than there are places");
-    (read_parameters<Effect>(from), ...);
-    read_columns(from, column_list());
+    (read_parameters<Effect>(from, parameters_), ...);
+    for (saved_column const& column : saved_columns<S>(into.state(), column_list()))
+      columns_.push_back(from.block(column.name(), numbers_.places * column.width, column.element));
     if constexpr (state_type::has_bodies) {
       into.bodies().for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
         bodies_.push_back(from.block<unsigned char>(name, n * sizeof(*elements)));
@@ -174,9 +261,10 @@ class checkpoint {
   numbers_type const& numbers() const { return numbers_; }
   saved_contacts<S> const& pair_contacts() const { return pair_contacts_; }
   saved_contacts<S> const& surface_contacts() const { return surface_contacts_; }
+  /// The values of a column, of all places.
   template <class C>
-  std::vector<column_element<C, S>> const& column() const {
-    return std::get<column_of<C>>(columns_).values;
+  column_element<C, S> const* column() const {
+    return reinterpret_cast<column_element<C, S> const*>(columns_[index_of<C>(column_list())].data());
   }
 
   /// Gives the simulation this state.
@@ -206,7 +294,8 @@ class checkpoint {
   template <class State>
   void restore_rest(State& s, double const* clock) const {
     if constexpr (State::has_begin_step) s.space.copy_from_host(s.particles.time, clock, clock_size);
-    (restore_parameters_of<Effect>(s.effects), ...);
+    [[maybe_unused]] auto parameters = parameters_.begin();
+    (restore_parameters(parameters, s.effects.template of<Effect>()), ...);
     s.time = numbers_.time;
     s.next_meeting = numbers_.meeting_between_steps();
     preparation prepare(s);
@@ -226,10 +315,11 @@ class checkpoint {
   template <class Space, class State>
   void restore_columns(Space const& space, State const& state, std::size_t place, std::size_t first,
                        std::size_t n) const {
-    for_each_column([&](auto c) {
-      constexpr auto width = std::size_t(column_layout<decltype(c), S>::width);
-      space.copy_from_host(state.at(c) + width * place, column<decltype(c)>().data() + width * first, width * n);
-    });
+    std::size_t k = 0;
+    for (saved_column const& column : saved_columns<S>(state, column_list())) {
+      std::size_t const bytes = column.bytes();
+      space.copy_from_host(column.data + bytes * place, columns_[k++].data() + bytes * first, bytes * n);
+    }
   }
 
  private:
@@ -238,76 +328,7 @@ class checkpoint {
   static void pass_types(Archive& archive) {
     archive.text("scalar", type_name<S>());
     archive.text("narrow phase", type_name<typename state_type::narrow_phase>());
-    std::string list;
-    ((list += (list.empty() ? "" : ", ") + type_name<Effect>()), ...);
-    archive.text("effects", list);
-  }
-
-  template <class E>
-  static std::string parameters_name() {
-    return "parameters of " + type_name<E>();
-  }
-  template <class C>
-  static std::string column_name() {
-    return "column " + type_name<C>();
-  }
-
-  /// An effect's parameters are bytes in a checkpoint if it has some, and does not say otherwise.
-  template <class E>
-  static constexpr bool has_bytes = [] {
-    static_assert(std::is_trivially_destructible<E>::value || !saves_parameters<E>,
-                  "collide: save and load: the parameters of this effect are no plain values: what they own cannot be "
-                  "saved; give it a member static constexpr bool saves_parameters = false, and set them after load");
-    return saves_parameters<E> && !std::is_empty<E>::value;
-  }();
-
-  /// The bytes of an effect's parameters, or of their parts if there is padding between them.
-  template <class E>
-  static std::vector<unsigned char> bytes_of_parameters(E const& effect) {
-    std::vector<unsigned char> bytes;
-    for_each_part_of(const_cast<E&>(effect), [&](auto const& part) {  // reads them only
-      std::size_t const before = bytes.size();
-      bytes.resize(before + sizeof part);
-      std::memcpy(bytes.data() + before, &part, sizeof part);
-    });
-    return bytes;
-  }
-  template <class E>
-  static std::size_t size_of_parameters() {
-    if constexpr (is_valid<for_each_part_call, E, no_part>) {
-      return bytes_of_parameters(E()).size();
-    } else {
-      return sizeof(E);
-    }
-  }
-  struct no_part {
-    template <class Part>
-    void operator()(Part&) const {}
-  };
-
-  template <class E, class Effects>
-  static void write_parameters(checkpoint_writer& to, Effects const& effects) {
-    if constexpr (has_bytes<E>) {
-      auto const bytes = bytes_of_parameters(effects.template of<E>());
-      to.block(parameters_name<E>(), bytes.data(), bytes.size());
-    }
-  }
-  template <class E>
-  void read_parameters(checkpoint_reader& from) {
-    if constexpr (has_bytes<E>) {
-      std::get<bytes_of<E>>(parameters_).values =
-          from.block<unsigned char>(parameters_name<E>(), size_of_parameters<E>());
-    }
-  }
-  template <class E, class Effects>
-  void restore_parameters_of(Effects& to) const {
-    if constexpr (has_bytes<E>) {
-      unsigned char const* from = std::get<bytes_of<E>>(parameters_).values.data();
-      for_each_part_of(to.template of<E>(), [&](auto& part) {
-        std::memcpy(static_cast<void*>(&part), from, sizeof part);
-        from += sizeof part;
-      });
-    }
+    archive.text("effects", list_of_names({type_name<Effect>...}));
   }
 
   using remembered = typename simulated::effects_type::remembered;
@@ -329,36 +350,18 @@ class checkpoint {
     saved.values = from.block<S>("values of " + name, all * width);
   }
 
-  template <class... C, class F>
-  static void for_each_in(columns<C...>, F const& f) {
-    (f(C{}), ...);
+  template <class Column, class... C>
+  static constexpr std::size_t index_of(columns<C...>) {
+    std::size_t k = 0;
+    ((std::is_same<C, Column>::value || (++k, false)) || ...);
+    return k;
   }
-  template <class... C>
-  void read_columns(checkpoint_reader& from, columns<C...>) {
-    ((std::get<column_of<C>>(columns_).values = from.block<column_element<C, S>>(
-          column_name<C>(), numbers_.places * std::uint64_t{column_layout<C, S>::width})),
-     ...);
-  }
-  template <class E>
-  struct bytes_of {
-    std::vector<unsigned char> values;
-  };
-  template <class C>
-  struct column_of {
-    std::vector<column_element<C, S>> values;
-  };
-  template <class List>
-  struct table_of;
-  template <class... C>
-  struct table_of<columns<C...>> {
-    using type = std::tuple<column_of<C>...>;
-  };
 
   numbers_type numbers_;
   saved_contacts<S> pair_contacts_, surface_contacts_;
-  std::tuple<bytes_of<Effect>...> parameters_;
-  std::vector<std::vector<unsigned char>> bodies_;  ///< poses, and what else is known of them
-  typename table_of<column_list>::type columns_;
+  saved_bytes parameters_;  ///< of the effects that have some
+  saved_bytes columns_;
+  saved_bytes bodies_;  ///< poses, and what else is known of them
 };
 
 }  // namespace detail

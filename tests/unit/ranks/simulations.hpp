@@ -46,39 +46,44 @@ played_scene<Simulation, Effect...> scene_of(std::string name, world<typename Si
   return {std::move(name), std::move(w), {effects...}, steps, static_cast<typename Simulation::scalar>(dt)};
 }
 
-/// All columns of particles.
+/// The values of all columns of particles.
+struct column_values {
+  struct column {
+    std::vector<unsigned char> bytes;
+    std::size_t width;  ///< bytes of a particle
+    bool is_scalar;     ///< the values are of the type of a simulation's numbers
+  };
+  std::vector<column> of;
+
+  template <class T>
+  void add(std::vector<T> const& values, std::size_t width, bool is_scalar) {
+    auto const* const bytes = reinterpret_cast<unsigned char const*>(values.data());
+    of.push_back({{bytes, bytes + values.size() * sizeof(T)}, width * sizeof(T), is_scalar});
+  }
+  /// The values of `n` particles from `first` on.
+  column_values part(std::size_t first, std::size_t n) const {
+    column_values p;
+    for (column const& c : of) {
+      auto const begin = c.bytes.begin() + static_cast<std::ptrdiff_t>(c.width * first);
+      p.of.push_back({{begin, begin + static_cast<std::ptrdiff_t>(c.width * n)}, c.width, c.is_scalar});
+    }
+    return p;
+  }
+  friend bool equal(column_values const& a, column_values const& b) {
+    return std::equal(a.of.begin(), a.of.end(), b.of.begin(), b.of.end(),
+                      [](column const& x, column const& y) { return x.bytes == y.bytes; });
+  }
+};
 template <class S, class List>
 struct all_values;
 template <class S, class... C>
-struct all_values<S, collide::columns<C...>> {
-  std::tuple<std::vector<collide::detail::column_element<C, S>>...> of;
-
+struct all_values<S, collide::columns<C...>> : column_values {
   template <class Simulation>
   void read(Simulation& from) {
-    of = {from.template to_host<C>()...};
-  }
-  /// The values of `n` particles from `first` on.
-  all_values part(std::size_t first, std::size_t n) const {
-    all_values p;
-    std::apply(
-        [&](auto const&... all) {
-          auto const cut = [&](auto const& values, std::size_t width) {
-            auto const begin = values.begin() + static_cast<std::ptrdiff_t>(width * first);
-            return std::decay_t<decltype(values)>(begin, begin + static_cast<std::ptrdiff_t>(width * n));
-          };
-          p.of = {cut(all, std::size_t(collide::detail::column_layout<C, S>::width))...};
-        },
-        of);
-    return p;
-  }
-  friend bool equal(all_values const& a, all_values const& b) {
-    return equal_each(a, b, std::index_sequence_for<C...>{});
-  }
-
- private:
-  template <std::size_t... I>
-  static bool equal_each(all_values const& a, all_values const& b, std::index_sequence<I...>) {
-    return (equal_bytes(std::get<I>(a.of), std::get<I>(b.of)) && ...);
+    of.clear();
+    (add(from.template to_host<C>(), std::size_t(collide::detail::column_layout<C, S>::width),
+         std::is_same<collide::detail::column_element<C, S>, S>::value),
+     ...);
   }
 };
 template <class Simulation>

@@ -53,56 +53,48 @@ void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t pla
   check_places(places);
 }
 
-/// Calls an effect's `check_parameters`, if it has one.
-template <class E, class Effects>
-void check_parameters_of(Effects const& effects) {
-  check_part(effects.template of<E>());
-}
-
 /// Calls `check_bodies` of an effect that keeps something for each body.
 template <class E>
 using check_bodies_call = decltype(std::declval<E const&>().check_bodies(std::size_t{}));
-template <class E, class Effects>
-void check_bodies_of(Effects const& effects, std::size_t bodies) {
-  if constexpr (is_valid<check_bodies_call, E>) effects.template of<E>().check_bodies(bodies);
+template <class E>
+void check_bodies_of([[maybe_unused]] E const& effect, [[maybe_unused]] std::size_t bodies) {
+  if constexpr (is_valid<check_bodies_call, E>) effect.check_bodies(bodies);
 }
 
 /// Calls `check_particles` and `check_walls` of the materials of an effect, if it has such.
 template <class E>
 using materials_call = decltype(std::declval<E const&>().made_of.check_particles(0));
-template <class E, class Effects>
-void check_materials_of(Effects const& effects, smallest_radii const& radii) {
-  if constexpr (is_valid<materials_call, E>) effects.template of<E>().made_of.check_particles(radii.largest_material);
+template <class E>
+void check_materials_of([[maybe_unused]] E const& effect, [[maybe_unused]] smallest_radii const& radii) {
+  if constexpr (is_valid<materials_call, E>) effect.made_of.check_particles(radii.largest_material);
 }
-template <class E, class Effects, class Space>
-void check_walls_of(Effects const& effects, Space const& space, std::size_t triangles, std::size_t bodies) {
-  if constexpr (is_valid<materials_call, E>) effects.template of<E>().made_of.check_walls(space, triangles, bodies);
+template <class E, class Space>
+void check_walls_of([[maybe_unused]] E const& effect, [[maybe_unused]] Space const& space,
+                    [[maybe_unused]] std::size_t triangles, [[maybe_unused]] std::size_t bodies) {
+  if constexpr (is_valid<materials_call, E>) effect.made_of.check_walls(space, triangles, bodies);
 }
 
 template <class E, class Radius>
 using longest_step_call = decltype(std::declval<E const&>().longest_step(std::declval<Radius>()));
-template <class T>
-std::string text_of(T x) {
+inline std::string text_of(double x) {
   std::ostringstream text;
   text << x;
   return text.str();
 }
 /// The longest step that an effect allows, by the radii of each material, or by the smallest of all.
-template <class E, class Effects>
-double longest_step_of(Effects const& effects, smallest_radii const& radii) {
+template <class E>
+double longest_step_of([[maybe_unused]] E const& effect, [[maybe_unused]] smallest_radii const& radii) {
   if constexpr (is_valid<longest_step_call, E, smallest_radii const&>) {
-    return effects.template of<E>().longest_step(radii);
+    return effect.longest_step(radii);
   } else if constexpr (is_valid<longest_step_call, E, double>) {
-    return effects.template of<E>().longest_step(radii.of_all);
+    return effect.longest_step(radii.of_all);
   } else {
     return std::numeric_limits<double>::infinity();
   }
 }
-/// Throws `error` if a step is too long for an effect.
-template <class E, class Effects, class S>
-void check_time_step_of(Effects const& effects, S dt, smallest_radii const& radii) {
-  double const longest = longest_step_of<E>(effects, radii);
-  if (!(radii.of_all > 0 && static_cast<double>(dt) > longest)) return;
+/// Throws `error` if a step is longer than an effect allows.
+inline void check_time_step(double dt, double longest, smallest_radii const& radii) {
+  if (!(radii.of_all > 0 && dt > longest)) return;
   throw error("collide: simulation: the time dt of a step, " + text_of(dt) +
               ", is longer than an effect allows with the smallest particles, " + text_of(longest) +
               ": take largest_time_step(simulation)");

@@ -102,9 +102,10 @@ class part_of_simulation {
     auto const& numbers = saved.numbers();
     S largest = max(numbers.largest_radius, numbers.common_radius), widest = largest < 0 ? -largest : largest;
     if constexpr (contains<all_columns, radius>) {
-      for (S const r : saved.template column<radius>()) {
-        largest = max(largest, r);
-        widest = max(widest, r < 0 ? -r : r);
+      S const* const radii = saved.template column<radius>();
+      for (std::uint64_t i = 0; i < numbers.places; ++i) {
+        largest = max(largest, radii[i]);
+        widest = max(widest, radii[i] < 0 ? -radii[i] : radii[i]);
       }
     }
     auto const free = static_cast<std::size_t>(all.free_size);
@@ -233,13 +234,6 @@ class part_of_simulation {
   template <class Column>
   std::vector<column_element<Column, S>> on_host() const {
     return simulation_.template to_host<Column>();
-  }
-
-  /// The columns `List` of particles at places that the host knows, on the host.
-  template <class List>
-  void pack(std::vector<std::uint32_t> const& places, rows<List>& to) {
-    listed_places const listed{in_space(space(), places, place_memory_)};
-    detail::pack_on_host(space(), data().particles, listed, places.size(), to);
   }
 
   /// How many of its particles are somewhere: there, and at a point that is finite. Waits.

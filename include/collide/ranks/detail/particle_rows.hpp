@@ -179,4 +179,67 @@ void deliver_rows(Ranks const& ranks, std::vector<Row>& rows, Rank const& rank_o
   rows = std::move(in.items);
 }
 
+/// A vector of plain values of any type, for their bytes.
+class any_vector {
+ public:
+  template <class T>
+  any_vector(std::vector<T>& of)
+      : of_{&of}, resize_{[](void* vector, std::size_t bytes) {
+          auto& values = *static_cast<std::vector<T>*>(vector);
+          values.resize(bytes / sizeof(T));
+          return reinterpret_cast<unsigned char*>(values.data());
+        }} {}
+  unsigned char* resize(std::size_t bytes) const { return resize_(of_, bytes); }
+
+ private:
+  void* of_;
+  unsigned char* (*resize_)(void* vector, std::size_t bytes);
+};
+
+/// Brings rows of particles, so many bytes of each, to the ranks that have set these, in the order of their numbers: a
+/// rank has set those from its start in `starts` on, and the last one has those, too, that effects make. All ranks call
+/// it.
+template <class Ranks>
+void bring_home(Ranks const& ranks, std::vector<std::uint64_t> const& starts, std::vector<id> const& numbers,
+                std::vector<unsigned char> const& rows, std::size_t bytes, any_vector const& to) {
+  exchange_buffer<id> leaving, coming;
+  exchange_buffer<unsigned char> sent, received;
+  unsigned char* home = nullptr;
+  together(ranks, [&] {
+    exchange_buffer<std::uint32_t> places;
+    fill_exchange_buffer(places, ranks.size(), [&](auto const& put) {
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        auto const after = std::upper_bound(starts.begin(), starts.end(), std::uint64_t{numbers[i]});
+        put(std::min(static_cast<int>(after - starts.begin()), ranks.size()) - 1, static_cast<std::uint32_t>(i));
+      }
+    });
+    for (std::uint32_t const place : places.items) {
+      auto const row = rows.begin() + static_cast<std::ptrdiff_t>(place * bytes);
+      leaving.items.push_back(numbers[place]);
+      sent.items.insert(sent.items.end(), row, row + static_cast<std::ptrdiff_t>(bytes));
+    }
+    leaving.counts = sent.counts = places.counts;
+    for (std::uint64_t& n : sent.counts) n *= bytes;
+  });
+  deliver(ranks, leaving, coming);
+  deliver(ranks, sent, received);
+  together(ranks, [&] { home = to.resize(received.items.size()); });
+  std::uint64_t const first = starts[static_cast<std::size_t>(ranks.rank())];
+  for (std::size_t i = 0; i < coming.items.size(); ++i)
+    std::memcpy(home + bytes * (coming.items[i] - first), received.items.data() + bytes * i, bytes);
+}
+
+/// Brings values of all ranks to the first one: those of rank 0 come first. All ranks call it.
+template <class Ranks>
+void bring_to_first(Ranks const& ranks, std::vector<unsigned char>& values) {
+  exchange_buffer<unsigned char> mine, all;
+  together(ranks, [&] {
+    mine.clear(ranks.size());
+    mine.counts[0] = values.size();
+    mine.items = std::move(values);
+  });
+  deliver(ranks, mine, all);
+  values = std::move(all.items);
+}
+
 }  // namespace collide::detail

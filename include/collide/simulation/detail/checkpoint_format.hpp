@@ -53,11 +53,15 @@ class checkpoint_writer {
   /// A block of plain values.
   template <class T>
   void block(std::string const& name, T const* elements, std::size_t n) {
+    block(name, elements, n, sizeof(T));
+  }
+  /// A block of `n` values, each of so many bytes.
+  void block(std::string const& name, void const* elements, std::size_t n, std::size_t bytes) {
     put(static_cast<std::uint32_t>(name.size()));
     put(name.data(), name.size());
-    put(static_cast<std::uint32_t>(sizeof(T)));
+    put(static_cast<std::uint32_t>(bytes));
     put(static_cast<std::uint64_t>(n));
-    put(elements, n * sizeof(T));
+    put(elements, n * bytes);
   }
   template <class T>
   void value(std::string const& name, T const& one) {
@@ -112,11 +116,13 @@ class checkpoint_reader {
   /// The elements of the block that is next. `n`: how many there must be.
   template <class T>
   std::vector<T> block(std::string const& name, std::uint64_t n) {
-    std::uint64_t const found = head(name, sizeof(T));
-    if (found != n) {
-      refuse(name, "the file has " + std::to_string(found) + " numbers, expected are " + std::to_string(n));
-    }
+    expect(name, n, sizeof(T));
     return elements<T>(name, n);
+  }
+  /// The elements of the next block as bytes: `n` of any type, each of so many bytes.
+  std::vector<unsigned char> block(std::string const& name, std::uint64_t n, std::size_t bytes) {
+    expect(name, n, bytes);
+    return elements<unsigned char>(name, n * bytes);
   }
   template <class T>
   void value(std::string const& name, T& one) {
@@ -140,6 +146,12 @@ class checkpoint_reader {
   }
 
  private:
+  void expect(std::string const& name, std::uint64_t n, std::size_t bytes) {
+    std::uint64_t const found = head(name, bytes);
+    if (found != n)
+      refuse(name, "the file has " + std::to_string(found) + " numbers, expected are " + std::to_string(n));
+  }
+
   /// Reads how many elements the block has.
   std::uint64_t head(std::string const& name, std::size_t element) {
     std::string found(name.size(), ' ');

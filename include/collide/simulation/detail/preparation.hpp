@@ -43,6 +43,14 @@ void check_contacts([[maybe_unused]] State const& s) {
   }
 }
 
+/// Bytes of memory of a space, on the host. Waits.
+template <class Space>
+std::vector<unsigned char> bytes_on_host(Space const& space, void const* from, std::size_t n) {
+  std::vector<unsigned char> copy(n);
+  space.copy_to_host(copy.data(), static_cast<unsigned char const*>(from), n);
+  return copy;
+}
+
 /// A column of a simulation's particles on the host. Waits.
 template <class Column, class State>
 std::vector<column_element<Column, typename State::S>> column_on_host(State const& s) {

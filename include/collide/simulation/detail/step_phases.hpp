@@ -59,12 +59,13 @@ class step_phases {
     if (state_type::asks_mesh && !s_.has_mesh)
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
     if (!(dt > 0) || !is_finite(dt)) throw error("collide: simulation: the time dt of a step is finite and above 0");
-    ((check_parameters_of<Effect>(s_.effects), check_bodies_of<Effect>(s_.effects, s_.bodies.size()),
-      check_materials_of<Effect>(s_.effects, s_.smallest)),
+    ((check_part(effect<Effect>()), check_bodies_of(effect<Effect>(), s_.bodies.size()),
+      check_materials_of(effect<Effect>(), s_.smallest)),
      ...);
     (check_box_of<Effect>(), ...);
     if constexpr (effects_type::repeats) check_sides();
-    ((check_time_step_of<Effect>(s_.effects, dt, s_.smallest)), ...);
+    [[maybe_unused]] double const time = static_cast<double>(dt);
+    (check_time_step(time, longest_step_of(effect<Effect>(), s_.smallest), s_.smallest), ...);
     if ((!effects_type::any_pair_contact || effects_type::has_clumps) && s_.effects.makes_only_where_free())
       throw error(
           "collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact, and does "
@@ -201,6 +202,11 @@ class step_phases {
   template <class Kernel>
   void for_each(Kernel const& kernel) {
     s_.space.for_each(s_.particles.size, kernel);
+  }
+
+  template <class E>
+  E const& effect() const {
+    return s_.effects.template of<E>();
   }
 
   /// Rounded to numbers of this type, the bounds of a box that repeats are bounds, too.
