@@ -97,7 +97,7 @@ struct tree_cost_model {
 
 /// By what `automatic` chooses between `bucket` and `bvh` where triangles are long and thin. It does so in spaces where
 /// `bvh` divides by area.
-inline constexpr tree_cost_model tree_costs{26, 13, 70, 30, 38, 450};
+inline constexpr tree_cost_model tree_costs{26, 16, 70, 30, 34, 450};
 /// By what it chooses in a simulation, for its steps, however long the build takes.
 inline constexpr tree_cost_model tree_costs_of_steps{0, 50, 500, 400, 0, 0};
 
@@ -105,7 +105,7 @@ inline constexpr tree_cost_model tree_costs_of_steps{0, 50, 500, 400, 0, 0};
 template <class Space>
 struct broad_phase_costs {
   static constexpr broad_phase_cost_model value = Space::host_accessible
-                                                      ? broad_phase_cost_model{150, 0.137, 4, 50, 25000, 13, 64}
+                                                      ? broad_phase_cost_model{70, 0.137, 4, 50, 25000, 13, 64}
                                                       : broad_phase_cost_model{0, 1.9, 0.012, 0.1, 30000};
 };
 
