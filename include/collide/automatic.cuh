@@ -169,7 +169,8 @@ struct automatic {
     /// The mean number of triangles whose bounding sphere a sphere reaches, of a few of both; not 0, as others may.
     template <class Spheres>
     double triangles_near(Spheres const& spheres) const {
-      std::size_t const n = detail::min<std::size_t>((spheres.size() + 7) / 8, 32),
+      std::size_t const few = 1 + detail::max(spheres.size(), mesh_.size()) / 8;  // it takes a part of the query
+      std::size_t const n = detail::min(spheres.size(), detail::min<std::size_t>(few, 32)),
                         m = detail::min<std::size_t>(mesh_.size(), 32);
       std::size_t near = 1;
       for (std::size_t k = 0; k < m; ++k) {
@@ -203,7 +204,7 @@ struct automatic {
       choices_.saved = 0;
       is_compact_ = !detail::sampled_triangles<S>(mesh_, 32).are_slender();
       if (is_compact_) return;
-      detail::sampled_triangles<S> const sample(mesh_, mesh_.size() < 2048 ? 64 : 128);
+      detail::sampled_triangles<S> const sample(mesh_);
       auto const n = static_cast<double>(spheres.size()), triangles = static_cast<double>(mesh_.size());
       double const passed = c.per_triangle_ns * triangles,
                    around = sample.boxes(spheres, detail::min(8 + spheres.size() / 4096, std::size_t{64}));
@@ -217,7 +218,7 @@ struct automatic {
         candidates = {made.grids, made.grid_count};
       }
       choices_.build = c.per_built_piece_ns * sample.pieces() * triangles;
-      double const per_sample_ns = 150 + 70 * around * detail::min(1.0, 128 / triangles);
+      double const per_sample_ns = 150 + 70 * around * detail::min(1.0, sample.capacity / triangles);
       for (double count = 8;;) {  // mostly these tell
         auto const mean = sample.reached(spheres, static_cast<std::size_t>(count), candidates);
         choices_.saved = passed + n * saved_by_tree(c, mean);
