@@ -78,7 +78,7 @@ aabb<double> wide_box_of(triangle<S> const& t) {
   return b.is_empty() ? aabb<double>::empty() : wide;
 }
 
-/// What part of a box another has, if each is a bit wider, so that what is flat has a volume.
+/// The part of a box that another has. Each counts as a bit wider, so that flat ones have a volume.
 inline double share_of_box(aabb<double> const& all, aabb<double> const& b) {
   double const lowest = all.max_extent() / 1024;
   double share = b.is_empty() ? 0 : 1;
@@ -358,7 +358,7 @@ class sampled_triangles {
     }
   }
 
-  /// What a number of triangles is multiplied by: so many spheres were asked.
+  /// The factor from the triangles that so many spheres found to the mean of all of them.
   double scale(std::size_t spheres) const {
     double const asked = static_cast<double>(spheres) * count_;
     return asked == 0 ? 0 : static_cast<double>(all_) / asked;
