@@ -46,11 +46,12 @@ struct grid_or_tree_ref : bucket_ref<S> {
 }  // namespace detail
 
 /// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
-/// long as no index has been made; that follows from the numbers of triangles and spheres alone, by the measured costs
-/// of the space (bench/results/README.md). `bucket` wins for all else, but on the host for some meshes of long thin
-/// triangles, where `bvh` does: if most of the boxes of 128 triangles is empty, it counts how many of these triangles,
-/// and how many would be candidates in the cells that `bucket` plans, up to 128 of the spheres touch; the first query
-/// asks so, then every 16th, and where there are twice or half as many spheres. After `build`
+/// long as no index has been made; that follows from the numbers of triangles and spheres, by the measured costs of the
+/// space (bench/results/README.md), and on the host from how many of up to 32 triangles are near up to 32 of the
+/// spheres. `bucket` wins for all else, but on the host for some meshes of long thin triangles, where `bvh` does: if
+/// most of the boxes of 32 triangles is empty, it counts how many of 128, and how many would be candidates in the cells
+/// that `bucket` plans, up to 128 of the spheres touch; the first query asks so, then every 16th, and where there are
+/// twice or half as many spheres. After `build`
 /// with a radius it is one of these two. On a device it is never `bvh`.
 ///
 /// The same calls always go the same way, and the pairs are the same either way. It is chosen by the
