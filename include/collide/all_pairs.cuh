@@ -103,24 +103,39 @@ struct all_pairs_query {
   COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, std::uint32_t n, std::size_t first,
                               std::size_t base) const {
     constexpr std::uint32_t per_thread = Block::items;
+    if constexpr (Block::num_threads == 1) {  // the triangle once for all of its spheres
+      s.count = 0;
+      for (std::uint32_t k = 0; k < n; ++k) {
+        std::size_t const triangle = base + s.encounters[k].triangle;
+        auto const around = bounding_sphere_of(pipeline.mesh[triangle]);
+        for (std::uint32_t j = 0; j < per_thread; ++j) {
+          test_one(block, s, first + j, triangle, [&] { return around; });
+          pipeline.drain_if_full(block, s.pipeline);
+        }
+      }
+      return;
+    }
     for (std::uint32_t i = 0; i < n * per_thread; i += Block::num_threads) {
       block.for_each_thread([&](int thread_rank) {
         if (thread_rank == 0) s.count = 0;
         std::uint32_t const own = i + static_cast<std::uint32_t>(thread_rank);
         if (own >= n * per_thread) return;
         encounter const e = s.encounters[own / per_thread];
-        test_one(block, s, first + std::size_t{e.thread_rank} * per_thread + own % per_thread, base + e.triangle);
+        std::size_t const triangle = base + e.triangle;
+        test_one(block, s, first + std::size_t{e.thread_rank} * per_thread + own % per_thread, triangle,
+                 [&] { return bounding_sphere_of(pipeline.mesh[triangle]); });
       });
       pipeline.drain_if_full(block, s.pipeline);
     }
   }
 
-  template <class Block>
-  COLLIDE_HD_INLINE void test_one(Block& block, scratch<Block>& s, std::size_t i, std::size_t triangle) const {
+  template <class Block, class BoundingSphere>
+  COLLIDE_HD_INLINE void test_one(Block& block, scratch<Block>& s, std::size_t i, std::size_t triangle,
+                                  BoundingSphere const& of_triangle) const {
     if (i >= pipeline.spheres.size()) return;
     auto const shape = pipeline.spheres[i];
     sphere<S> const around = swept_bounding_sphere(shape);
-    if (!bounding_sphere_of(pipeline.mesh[triangle]).overlaps(around.centre, around.radius)) return;
+    if (!of_triangle().overlaps(around.centre, around.radius)) return;
     pipeline.push(block, s.pipeline, {static_cast<id>(i), static_cast<id>(triangle)}, shape);
   }
 };

@@ -46,11 +46,12 @@ struct grid_or_tree_ref : bucket_ref<S> {
 }  // namespace detail
 
 /// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
-/// long as no index has been made; that follows from the numbers of triangles and spheres alone, by the measured costs
-/// of the space (bench/results/README.md). `bucket` wins for all else, but on the host for some meshes of long thin
-/// triangles, where `bvh` does: if most of the boxes of 128 triangles is empty, it counts how many of these triangles,
-/// and how many would be candidates in the cells that `bucket` plans, up to 128 of the spheres touch; the first query
-/// asks so, then every 16th, and where there are twice or half as many spheres. After `build`
+/// long as no index has been made; that follows from the numbers of triangles and spheres, by the measured costs of the
+/// space (bench/results/README.md), and on the host from how many of up to 32 triangles are near up to 32 of the
+/// spheres. `bucket` wins for all else, but on the host for some meshes of long thin triangles, where `bvh` does: if
+/// most of the boxes of 32 triangles is empty, it counts how many of 128, and how many would be candidates in the cells
+/// that `bucket` plans, up to 128 of the spheres touch; the first query asks so, then every 16th, and where there are
+/// twice or half as many spheres. After `build`
 /// with a radius it is one of these two. On a device it is never `bvh`.
 ///
 /// The same calls always go the same way, and the pairs are the same either way. It is chosen by the
@@ -69,7 +70,7 @@ struct automatic {
     template <class Space>
     void build(Space&, automatic const&, mesh_view<S> mesh) {
       mesh_ = mesh;
-      has_grid_ = has_bounds_ = has_tree_ = is_given_ = is_sampled_ = false;
+      has_grid_ = has_bounds_ = has_tree_ = is_given_ = is_compact_ = false;
       spent_ = spent_on_boxes_ = 0;
       choices_ = {};
     }
@@ -147,49 +148,68 @@ struct automatic {
     strategy choose(Space& space, automatic const& options, Spheres const& spheres) {
       is_planned_ = false;
       bool const wants_index =
-          has_grid_ || has_tree_ || (best_without_tree(options) == strategy::grid && wants_grid<Space>(spheres.size()));
+          has_grid_ || has_tree_ || (best_without_tree(options) == strategy::grid && wants_grid<Space>(spheres));
       if (!wants_index) return strategy::all_pairs;
       return prefers_tree(space, options, spheres) ? strategy::tree : strategy::grid;
     }
 
-    template <class Space>
-    bool wants_grid(std::size_t spheres) {
+    template <class Space, class Spheres>
+    bool wants_grid(Spheres const& spheres) {
       constexpr broad_phase_cost_model c = broad_phase_costs<Space>::value;
-      auto const n = static_cast<double>(spheres), triangles = static_cast<double>(mesh_.size());
-      double const saved = n * (c.per_near_sphere_ns - c.per_sphere_ns) +
-                           std::ceil(n / c.together) * c.together * c.per_pair_ns * triangles;
+      auto const n = static_cast<double>(spheres.size()), triangles = static_cast<double>(mesh_.size());
       double const spared = has_bounds_ ? 0 : c.per_bound_ns;  // of all pairs, which then need not be made
+      double const build = c.build_ns + (c.per_triangle_ns - spared) * triangles;
+      double saved = std::ceil(n / c.together) * c.together * c.per_pair_ns * triangles - n * c.per_sphere_ns;
+      if constexpr (Space::host_accessible) {
+        if (build >= saved + spent_) saved += n * c.per_near_ns * triangles_near(spheres);
+      }
       // as long as a query does not pay for the grid alone, nobody knows whether there will be another
-      return pays(c.build_ns + (c.per_triangle_ns - spared) * triangles, saved, spent_);
+      return pays(build, saved, spent_);
     }
 
-    /// True if long thin triangles keep a grid so busy that a tree is faster, the build included. The grid is planned
-    /// for that, but holds no triangles yet.
+    /// The mean number of triangles whose bounding sphere a sphere reaches, of a few of both; not 0, as others may.
+    template <class Spheres>
+    double triangles_near(Spheres const& spheres) const {
+      std::size_t const few = 1 + detail::max(spheres.size(), mesh_.size()) / 8;  // it takes a part of the query
+      std::size_t const n = detail::min(spheres.size(), detail::min<std::size_t>(few, 32)),
+                        m = detail::min<std::size_t>(mesh_.size(), 32);
+      std::size_t near = 1;
+      for (std::size_t k = 0; k < m; ++k) {
+        auto const around = detail::bounding_sphere_of(mesh_[mesh_.size() / m * k]);
+        for (std::size_t i = 0; i < n; ++i) {
+          auto const s = detail::swept_bounding_sphere(spheres[spheres.size() / n * i]);
+          near += around.overlaps(s.centre, s.radius) ? 1 : 0;
+        }
+      }
+      return n * m == 0 ? 0 : static_cast<double>(near * mesh_.size()) / static_cast<double>(n * m);
+    }
+
+    /// True if long thin triangles keep a grid so busy that a tree is faster, the build included.
     template <class Space, class Spheres>
     bool prefers_tree([[maybe_unused]] Space& space, [[maybe_unused]] automatic const& options,
                       [[maybe_unused]] Spheres const& spheres) {
       if constexpr (bvh_tuning<Space>::divides_by_area) {
-        if (options.grid.memory_budget != 0 || (is_sampled_ && !is_slender_)) return false;
-        if (choices_.is_due(spheres.size())) {
-          detail::sampled_triangles<S> const sample(mesh_);
-          is_sampled_ = true;
-          is_slender_ = sample.are_slender();
-          if (!is_slender_) return false;
-          estimate_tree(space, options, sample, spheres);
-        }
+        if (options.grid.memory_budget != 0 || is_compact_) return false;
+        if (choices_.is_due(spheres.size())) estimate_tree(space, options, spheres);
         return choices_.saved > 0 && pays(has_tree_ ? 0 : choices_.build, choices_.saved, spent_on_boxes_);
       } else {
         return false;
       }
     }
 
-    /// Estimates what a tree takes to build, and what it saves of this query.
+    /// Estimates what a tree takes to build, and what it saves of this query. The grid is planned for that, but holds
+    /// no triangles yet.
     template <class Space, class Spheres>
-    void estimate_tree(Space& space, automatic const& options, detail::sampled_triangles<S> const& sample,
-                       Spheres const& spheres) {
-      double const around = sample.reached(spheres, 8, 1).boxes;
+    void estimate_tree(Space& space, automatic const& options, Spheres const& spheres) {
+      constexpr tree_cost_model c = tree_costs;
       choices_.saved = 0;
-      if (slender_costs.per_box_ns * around <= slender_costs.per_sphere_ns) return;  // it does not save anything
+      is_compact_ = !detail::sampled_triangles<S>(mesh_, 32).are_slender();
+      if (is_compact_) return;
+      detail::sampled_triangles<S> const sample(mesh_);
+      auto const n = static_cast<double>(spheres.size()), triangles = static_cast<double>(mesh_.size());
+      double const passed = c.per_triangle_ns * triangles,
+                   around = sample.boxes(spheres, detail::min(8 + spheres.size() / 4096, std::size_t{64}));
+      if (passed + n * c.per_box_ns * around <= n * c.per_sphere_ns) return;  // it does not save anything
       detail::planned_candidates<S> candidates;
       if constexpr (std::is_same<Spheres, sphere_view<S>>::value) {
         build_grid(space, options);
@@ -198,18 +218,15 @@ struct automatic {
         auto const made = grid_.mesh_lookup();
         candidates = {made.grids, made.grid_count};
       }
-      double const pieces = pieces_for(around);
-      choices_.build = slender_costs.per_built_piece_ns * pieces * static_cast<double>(mesh_.size());
-      constexpr double per_sample_ns = 300;
-      auto const n = static_cast<double>(spheres.size());
-      for (std::size_t count = 8;;) {  // mostly these tell
-        auto const mean = sample.reached(spheres, count, pieces, candidates);
-        choices_.saved = n * saved_by_tree(slender_costs, mean);
+      choices_.build = c.per_built_piece_ns * sample.pieces() * triangles;
+      double const per_sample_ns = 150 + 70 * around * detail::min(1.0, sample.capacity / triangles);
+      for (double count = 8;;) {  // mostly these tell
+        auto const mean = sample.reached(spheres, static_cast<std::size_t>(count), candidates);
+        choices_.saved = passed + n * saved_by_tree(c, mean);
         // more, up to a thirtieth of the query
-        double const affords = n * (slender_costs.per_box_ns * mean.candidates) / (30 * per_sample_ns);
-        bool const tells = choices_.build > 4 * (choices_.saved + spent_on_boxes_);
-        if (count > 8 || tells || affords < 16) break;
-        count = static_cast<std::size_t>(detail::min(affords, 128.0));
+        double const affords = (passed + n * c.per_box_ns * (1 + mean.candidates)) / (30 * per_sample_ns);
+        if (count > 8 || choices_.build > 8 * (choices_.saved + spent_on_boxes_) || affords < 16) break;
+        count = detail::min(affords, 128.0);
       }
     }
 
@@ -223,19 +240,14 @@ struct automatic {
         if (!sample.are_slender()) return false;
         S const radius = spheres.one_radius() ? spheres.common_radius() : spheres[0].radius;
         detail::middles_as_spheres<S> const middles{mesh_, radius};
-        return saved_by_tree(slender_costs_of_steps,
-                             sample.reached(middles, 128, pieces_for(sample.reached(middles, 8, 1).boxes))) > 0;
+        return saved_by_tree(tree_costs_of_steps, sample.reached(middles, 128)) > 0;
       } else {
         return false;
       }
     }
 
-    /// Into how many pieces a tree cuts triangles, of whose boxes so many are around a place, about, as
-    /// triangle_pieces.hpp has it.
-    static double pieces_for(double around) { return detail::min(detail::max(std::sqrt(around / 2), 2.0), 16.0); }
-
     /// Nanoseconds by which a tree is faster than a grid, for each sphere.
-    static double saved_by_tree(slender_cost_model const& c, detail::reached_by_sphere const& mean) {
+    static double saved_by_tree(tree_cost_model const& c, detail::reached_by_sphere const& mean) {
       return c.per_box_ns * mean.candidates - c.per_sphere_ns - c.per_touched_ns * mean.triangles -
              c.per_piece_ns * (mean.pieces - mean.triangles);
     }
@@ -293,10 +305,10 @@ struct automatic {
     all_pairs::index<S> bounds_;
     bvh::index<S> tree_;
     bool has_grid_ = false, has_bounds_ = false, has_tree_ = false;
-    bool is_given_ = false;                         ///< made for a radius, or for steps, until the next build
-    bool is_sampled_ = false, is_slender_ = false;  ///< the mesh
-    bool is_planned_ = false;                       ///< the grid, for the spheres of this query
-    strategy strategy_ = strategy::all_pairs;       ///< of this query
+    bool is_given_ = false;                    ///< made for a radius, or for steps, until the next build
+    bool is_compact_ = false;                  ///< the mesh is known to have no long thin triangles
+    bool is_planned_ = false;                  ///< the grid, for the spheres of this query
+    strategy strategy_ = strategy::all_pairs;  ///< of this query
     tree_choices choices_;
     double spent_ = 0;           ///< nanoseconds that a grid would have saved so far
     double spent_on_boxes_ = 0;  ///< nanoseconds that a tree would have saved so far

@@ -78,6 +78,43 @@ TEST_CASE("automatic: a first query tests all pairs where that takes less than t
   }
 }
 
+TEST_CASE("automatic: takes the index of least work in small families of scenes, on the host") {
+  enum class choice { grid, tree, all_pairs };
+  struct row {
+    char const* scene;
+    std::size_t spheres, triangles;
+    choice first, again;  // in the first query, and in the hundredth
+  };
+  // as measured, where the others take at least a fifth longer: docs/development/experiments.md
+  for (row const& r : {row{"study", 2000, 200, choice::grid, choice::grid},          // compact
+                       row{"grains", 20000, 2000, choice::grid, choice::grid},       // many of both
+                       row{"soup", 200, 40, choice::all_pairs, choice::grid},        // few, far apart
+                       row{"giants_1", 40, 40, choice::all_pairs, choice::grid},     // few, one of them a giant
+                       row{"giants_10", 20000, 2000, choice::grid, choice::grid},    // giants among small ones
+                       row{"needles_1000", 2000, 200, choice::grid, choice::grid},   // few long ones, large spheres
+                       row{"tube_1000", 20000, 2000, choice::tree, choice::tree},    // long, side by side
+                       row{"shaft_100", 20000, 2000, choice::tree, choice::tree},    // a bundle
+                       row{"tube_1000", 4000, 3000, choice::grid, choice::tree}}) {  // a tree pays later
+    CAPTURE(r.scene);
+    CAPTURE(r.spheres);
+    io::scene const s = io::find_scene(r.scene)->make(r.spheres, r.triangles, 1);
+    std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()),
+        centres(s.centres.begin(), s.centres.end());
+    auto const mesh = collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count());
+    auto const balls = collide::spheres_xyz(centres.data(), s.sphere_count(), static_cast<float>(s.radius));
+    collide::host space(1);
+    collide::automatic::index<float> index;
+    index.build(space, collide::automatic(), mesh);
+    auto const chosen = [&](int queries) {
+      for (int k = 0; k < queries; ++k) index.prepare(space, collide::automatic(), balls);
+      if (index.cell_width(space) > 0) return choice::grid;
+      return index.mesh_lookup().asks_tree() ? choice::tree : choice::all_pairs;
+    };
+    CHECK(chosen(1) == r.first);
+    CHECK(chosen(99) == r.again);
+  }
+}
+
 TEST_CASE("automatic: small scenes have the same pairs by whichever way, on the host") {
   tests::check_automatic_scenes(collide::host(1));
   tests::check_automatic_scenes(tests::lockstep<64, true>(1));

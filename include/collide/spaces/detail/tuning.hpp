@@ -76,17 +76,18 @@ struct query_tuning {
 
 /// Costs of the broad phases, in nanoseconds, as `bench/automatic_bench` measures them; only the ratios count.
 struct broad_phase_cost_model {
-  double per_near_sphere_ns;  ///< `all_pairs`: a sphere and the few triangles that it is near to
-  double per_pair_ns;         ///< `all_pairs`: a sphere and any triangle
-  double per_sphere_ns;       ///< `bucket`: a sphere
-  double per_triangle_ns;     ///< `bucket`: a triangle of the build
-  double build_ns;            ///< `bucket`: the build, however small the mesh
-  double per_bound_ns = 0;    ///< `all_pairs`: a triangle of the build
-  double together = 1;        ///< `all_pairs`: as many spheres take as long as one
+  double per_near_ns;       ///< `all_pairs`: a sphere and a triangle that it is near to
+  double per_pair_ns;       ///< `all_pairs`: a sphere and any triangle
+  double per_sphere_ns;     ///< `bucket`: a sphere
+  double per_triangle_ns;   ///< `bucket`: a triangle of the build
+  double build_ns;          ///< `bucket`: the build, however small the mesh
+  double per_bound_ns = 0;  ///< `all_pairs`: a triangle of the build
+  double together = 1;      ///< `all_pairs`: as many spheres take as long as one
 };
 
 /// Costs of queries of long thin triangles, in nanoseconds, on one core of an AMD EPYC; only the ratios count.
-struct slender_cost_model {
+struct tree_cost_model {
+  double per_triangle_ns;     ///< `bucket`: a triangle of the mesh
   double per_box_ns;          ///< `bucket`: a sphere and a triangle whose box it reaches, and which is in its cell
   double per_sphere_ns;       ///< `bvh`: a sphere
   double per_touched_ns;      ///< `bvh`: a sphere and a triangle that it touches
@@ -96,15 +97,15 @@ struct slender_cost_model {
 
 /// By what `automatic` chooses between `bucket` and `bvh` where triangles are long and thin. It does so in spaces where
 /// `bvh` divides by area.
-inline constexpr slender_cost_model slender_costs{16, 200, 80, 38, 350};
+inline constexpr tree_cost_model tree_costs{26, 16, 70, 30, 34, 450};
 /// By what it chooses in a simulation, for its steps, however long the build takes.
-inline constexpr slender_cost_model slender_costs_of_steps{50, 500, 400, 0, 0};
+inline constexpr tree_cost_model tree_costs_of_steps{0, 50, 500, 400, 0, 0};
 
 /// By what `automatic` chooses in a space. The default is one thread of an AMD EPYC, or `cuda_shared` on an H100.
 template <class Space>
 struct broad_phase_costs {
   static constexpr broad_phase_cost_model value = Space::host_accessible
-                                                      ? broad_phase_cost_model{350, 0.137, 4, 23, 20000, 13, 64}
+                                                      ? broad_phase_cost_model{80, 0.137, 4, 30, 22000, 13, 64}
                                                       : broad_phase_cost_model{0, 1.9, 0.012, 0.1, 30000};
 };
 

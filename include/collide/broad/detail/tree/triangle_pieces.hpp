@@ -66,6 +66,40 @@ struct triangle_shape {
   }
 };
 
+/// The box of a triangle in doubles.
+template <class S>
+aabb<double> wide_box_of(triangle<S> const& t) {
+  aabb<S> const b = triangle_aabb_of(t);
+  aabb<double> wide;
+  for (int k = 0; k < 3; ++k) {
+    wide.lower[k] = static_cast<double>(b.lower[k]);
+    wide.upper[k] = static_cast<double>(b.upper[k]);
+  }
+  return b.is_empty() ? aabb<double>::empty() : wide;
+}
+
+/// The part of a box that another has. Each counts as a bit wider, so that flat ones have a volume.
+inline double share_of_box(aabb<double> const& all, aabb<double> const& b) {
+  double const lowest = all.max_extent() / 1024;
+  double share = b.is_empty() ? 0 : 1;
+  for (int k = 0; k < 3; ++k) share *= (b.upper[k] - b.lower[k] + lowest) / (all.upper[k] - all.lower[k] + lowest);
+  return share;
+}
+
+/// Into how many pieces triangles are cut in the mean: a place in the box of the mesh is in so many boxes of
+/// triangles, and of k pieces of each in that by k^2, as each has a part of 1 / k^3 of the volume.
+inline int wanted_pieces(double around) {
+  constexpr double few = 2;  // boxes; docs/development/experiments.md
+  double const pieces = std::sqrt(around / few);
+  return pieces < 16 ? static_cast<int>(max(pieces, 2.0)) : 16;
+}
+
+/// How many pieces more than triangles there may be, as many as are wanted in the mean: at most 15 for each triangle,
+/// and not more than 3 where these are more than 2^18.
+inline std::size_t extra_pieces(std::size_t triangles, int wanted) {
+  return min(max(3 * triangles, std::size_t{1} << 18), static_cast<std::size_t>(wanted - 1) * triangles);
+}
+
 /// Cuts the triangles of a mesh for which that pays.
 template <class S>
 class triangle_pieces {
@@ -91,8 +125,7 @@ class triangle_pieces {
         });
     if (!(total.wasted > total.all / 2) || !std::isfinite(total.all)) return 0;
     std::uint32_t* const first = first_.reserve(space.resource(), n + 1);
-    std::size_t const max_extra = min(15 * n, max(3 * n, std::size_t{1} << 18));
-    std::size_t const extra = min(max_extra, static_cast<std::size_t>(wanted_pieces(space, mesh) - 1) * n);
+    std::size_t const extra = extra_pieces(n, wanted_pieces(boxes_around(space, mesh)));
     space.for_each(n, [&](std::size_t i) {
       first[i] = pieces_of(triangle_shape(mesh[i]), static_cast<double>(extra) / total.roots);
     });
@@ -133,37 +166,16 @@ class triangle_pieces {
     return all;
   }
 
-  /// Into how many pieces triangles are cut in the mean: a place in the box of the mesh is in so many boxes of
-  /// triangles, and of k pieces of each in that by k^2, as each has a part of 1 / k^3 of the volume.
+  /// In how many boxes of triangles a place in the box of the mesh is.
   template <class Space>
-  static int wanted_pieces(Space& space, mesh_view<S> const& mesh) {
+  static double boxes_around(Space& space, mesh_view<S> const& mesh) {
     using box = aabb<double>;
-    auto const box_of = [](triangle<S> const& t) {
-      aabb<S> const b = triangle_aabb_of(t);
-      box wide;
-      for (int k = 0; k < 3; ++k) {
-        wide.lower[k] = static_cast<double>(b.lower[k]);
-        wide.upper[k] = static_cast<double>(b.upper[k]);
-      }
-      return b.is_empty() ? box::empty() : wide;
-    };
     auto const join = [](box& to, box const& b) { to = typename box::merge{}(to, b); };
     box const all = sum_of_parts<box>(
-        space, mesh, box::empty(), [&](box& to, triangle<S> const& t) { join(to, box_of(t)); }, join);
-    double const lowest = all.max_extent() / 1024;  // so that what is flat has a volume
-    double const around = sum_of_parts<double>(
-        space, mesh, 0.0,
-        [&](double& to, triangle<S> const& t) {
-          box const b = box_of(t);
-          double fraction = b.is_empty() ? 0 : 1;
-          for (int k = 0; k < 3; ++k)
-            fraction *= (b.upper[k] - b.lower[k] + lowest) / (all.upper[k] - all.lower[k] + lowest);
-          to += fraction;
-        },
-        [](double& to, double fraction) { to += fraction; });
-    constexpr double few = 2;  // boxes; docs/development/experiments.md
-    double const pieces = std::sqrt(around / few);
-    return pieces < 16 ? static_cast<int>(max(pieces, 2.0)) : 16;
+        space, mesh, box::empty(), [&](box& to, triangle<S> const& t) { join(to, wide_box_of(t)); }, join);
+    return sum_of_parts<double>(
+        space, mesh, 0.0, [&](double& to, triangle<S> const& t) { to += share_of_box(all, wide_box_of(t)); },
+        [](double& to, double share) { to += share; });
   }
 
   /// In proportion to what makes the sum of the boxes least, but none shorter than wide.
@@ -270,9 +282,13 @@ struct middles_as_spheres {
 template <class S>
 class sampled_triangles {
  public:
-  explicit sampled_triangles(mesh_view<S> const& mesh) : all_{mesh.size()}, count_{0} {
-    std::size_t const n = min(all_, std::size_t{capacity});
+  static constexpr std::size_t capacity = 128;
+
+  explicit sampled_triangles(mesh_view<S> const& mesh, std::size_t max_count = capacity)
+      : all_{mesh.size()}, count_{0} {
+    std::size_t const n = min(all_, max_count);
     double wasted = 0, surface = 0;
+    aabb<double> all = aabb<double>::empty();
     for (std::size_t i = 0; i < n; ++i) {
       triangle<S> const t = mesh[all_ / n * i + all_ % n * i / n];
       triangle_shape const shape(t);
@@ -281,43 +297,72 @@ class sampled_triangles {
       surface += shape.half_surface;
       boxes_[count_] = triangle_aabb_of(t);
       triangles_[count_++] = t;
+      all = aabb<double>::merge{}(all, wide_box_of(t));
     }
     // more than that is cut into pieces
     are_slender_ = wasted > surface / 2 && is_finite(surface);
+    if (!are_slender_) return;
+    double around = 0;
+    for (int k = 0; k < count_; ++k) around += share_of_box(all, wide_box_of(triangles_[k]));
+    auto const of = static_cast<double>(all_);
+    pieces_ = 1 + static_cast<double>(extra_pieces(all_, wanted_pieces(around * of / count_))) / of;
   }
 
   /// True if their boxes are mostly empty.
   bool are_slender() const { return are_slender_; }
 
-  /// The mean of what spheres reach, at rest or in motion, from at most so many of them. A triangle is in `pieces`.
+  /// Into how many pieces a tree cuts them, in the mean.
+  double pieces() const { return pieces_; }
+
+  /// The mean number of triangles whose box spheres reach, from at most so many of them.
   template <class Spheres>
-  reached_by_sphere reached(Spheres const& spheres, std::size_t max_spheres, double pieces,
+  double boxes(Spheres const& spheres, std::size_t max_spheres) const {
+    std::size_t reached = 0;
+    each_sample(spheres, max_spheres, [&](sphere<S> const& s) {
+      for (int k = 0; k < count_; ++k) reached += boxes_[k].overlaps(s.centre, s.radius) ? 1 : 0;
+    });
+    return static_cast<double>(reached) * scale(min(spheres.size(), max_spheres));
+  }
+
+  /// The mean of what spheres reach, at rest or in motion, from at most so many of them.
+  template <class Spheres>
+  reached_by_sphere reached(Spheres const& spheres, std::size_t max_spheres,
                             planned_candidates<S> const& is_candidate = {}) const {
-    std::size_t const n = min(spheres.size(), max_spheres);
     reached_by_sphere sum{0, 0, 0, 0};
-    for (std::size_t i = 0; i < n; ++i) {
-      sphere<S> const s = swept_bounding_sphere(spheres[spheres.size() / n * i + spheres.size() % n * i / n]);
-      if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(s.radius)) continue;
+    each_sample(spheres, max_spheres, [&](sphere<S> const& s) {
       for (int k = 0; k < count_; ++k) {
         triangle_aabb<S> const& box = boxes_[k];
         if (!box.overlaps(s.centre, s.radius)) continue;
         S const square = distance_squared(triangles_[k], s);
         S const x = box.upper[0] - box.lower[0], y = box.upper[1] - box.lower[1], z = box.upper[2] - box.lower[2];
         S const aside = max(min(x, y), min(max(x, y), z));  // the longer side of the box that is not its longest
-        S const near_piece = s.radius + aside / static_cast<S>(2 * pieces);
+        S const near_piece = s.radius + aside / static_cast<S>(2 * pieces_);
         sum.boxes += 1;
         sum.candidates += is_candidate(box, s.radius, square);
         sum.pieces += square <= near_piece * near_piece;
         sum.triangles += square <= s.radius * s.radius;
       }
-    }
-    if (n == 0 || count_ == 0) return sum;
-    double const scale = static_cast<double>(all_) / (static_cast<double>(n) * count_);
-    return {sum.boxes * scale, sum.candidates * scale, sum.pieces * scale, sum.triangles * scale};
+    });
+    double const of_all = scale(min(spheres.size(), max_spheres));
+    return {sum.boxes * of_all, sum.candidates * of_all, sum.pieces * of_all, sum.triangles * of_all};
   }
 
  private:
-  static constexpr int capacity = 128;
+  /// Calls f with up to `max_spheres` of the spheres.
+  template <class Spheres, class F>
+  static void each_sample(Spheres const& spheres, std::size_t max_spheres, F const& f) {
+    std::size_t const n = min(spheres.size(), max_spheres);
+    for (std::size_t i = 0; i < n; ++i) {
+      sphere<S> const s = swept_bounding_sphere(spheres[spheres.size() / n * i + spheres.size() % n * i / n]);
+      if (is_valid_radius(s.radius) && is_finite(s.centre) && is_finite(s.radius)) f(s);
+    }
+  }
+
+  /// The factor from the triangles that so many spheres found to the mean of all of them.
+  double scale(std::size_t spheres) const {
+    double const asked = static_cast<double>(spheres) * count_;
+    return asked == 0 ? 0 : static_cast<double>(all_) / asked;
+  }
 
   static S distance_squared(triangle<S> const& t, sphere<S> const& s) {
     local_triangle<S> const l = to_local<S>(t, s);
@@ -329,6 +374,7 @@ class sampled_triangles {
   std::size_t all_;  ///< of the mesh
   int count_;        ///< that are finite
   bool are_slender_;
+  double pieces_ = 1;
 };
 
 }  // namespace collide::detail
