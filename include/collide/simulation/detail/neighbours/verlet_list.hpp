@@ -201,6 +201,8 @@ class verlet_list {
     }
   }
 
+  /// From `renew` until particles meet: not 0 in memory of the space if lists were made anew.
+  std::uint32_t const* rebuild() const { return &header_.data()->rebuild; }
   /// True if the last `renew` has made the lists anew; where particles meet once a pair.
   bool are_new() const { return are_new_; }
 
