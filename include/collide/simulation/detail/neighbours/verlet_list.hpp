@@ -395,7 +395,7 @@ class verlet_list {
   buffer<reference<S, contains<typename Effects::all, radius>>> references_;
   buffer<column_element<alive, S>> known_;
   column_buffers<S, typename Effects::interaction_copies> memory_;
-  contact_memory<S, typename Effects::remembered> contacts_;
+  contact_memory<S, typename Effects::remembered, Effects::meets_once> contacts_;
   std::conditional_t<Once, pair_actions<S, Scene>, no_pair_actions> pairs_;
 };
 
