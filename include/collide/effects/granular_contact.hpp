@@ -124,7 +124,10 @@ struct granular_contact {
     for (int c = 0; c < 3; ++c) {
       s.position[c] = lanes::of([&](int k) { return seen(k)[position{}][c]; });
       s.velocity[c] = lanes::of([&](int k) { return seen(k)[velocity{}][c]; });
-      if constexpr (turns) s.spin[c] = lanes::of([&](int k) { return seen(k)[angular_velocity{}][c]; });
+      s.spin[c] = lanes::of([&](int k) {
+        if constexpr (turns) return seen(k)[angular_velocity{}][c];
+        return S(0);
+      });
     }
     s.radius = lanes::of([&](int k) { return seen(k).radius(); });
     s.density = lanes::of([&](int k) { return made_of.template density_of<S>(seen(k)) * of_clump<S>(seen(k)); });

@@ -84,6 +84,9 @@ std::string played(Space const& space, Law const& law, heap const& of, Effect co
     save(made, file);
     all += file.str();
     load(made, file);
+    std::stringstream again(std::ios::out | std::ios::binary);
+    save(made, again);
+    CHECK(again.str() == file.str());
   }
   return all;
 }

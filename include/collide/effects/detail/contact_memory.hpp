@@ -78,7 +78,8 @@ template <class S, class List>
 struct alignas(contact_values<S, List>::width > 2 ? 4 * sizeof(S) : sizeof(S)) contact_record
     : contact_numbers<S, List> {};
 
-/// The kept contacts of a particle, in the order of the numbers of the others.
+/// The kept contacts of a particle, in the order of the numbers of the others; of two that do the opposite to each
+/// other the one with the smaller number has theirs.
 struct kept_range {
   std::uint32_t first, count;
 };
@@ -110,6 +111,7 @@ struct contact_memory_ref {
   contact_numbers<S, List>* kept;  ///< contacts while lists are made anew,
   id* kept_others;                 ///< numbers of the other particles in these
   kept_range* kept_of;             ///< of each particle, by its number
+  std::size_t kept_capacity;       ///< contacts for which there is room
 
   COLLIDE_HD_INLINE contact_slot<S, List> slot(std::size_t item) const {
     return {numbers + item * items_apart, numbers_apart};
@@ -127,6 +129,47 @@ struct saved_contacts {
   std::vector<S> values;
 };
 
+/// The memory of a contact, as the other of two particles that do the opposite to each other has it.
+template <class S, class List>
+COLLIDE_HD_INLINE contact_values<S, List> turned_round(contact_values<S, List> values) {
+  values.for_each_number([](S& x, int, int sign) { x = sign < 0 ? 0 - x : x; });
+  return values;
+}
+
+/// Contacts that are known once a pair, for a checkpoint.
+template <class S, class List>
+class contacts_by_number {
+ public:
+  explicit contacts_by_number(std::size_t particles) : of_(particles) {}
+
+  /// The contact of two particles, as the first has it.
+  void add(id first, id second, contact_numbers<S, List> const& as_first) {
+    contact_numbers<S, List> as_second = as_first;
+    as_second.set(turned_round(as_first.values()));
+    of_[first].push_back({second, as_first});
+    of_[second].push_back({first, as_second});
+  }
+  saved_contacts<S> sorted() {
+    saved_contacts<S> all;
+    for (auto& contacts : of_) {
+      std::sort(contacts.begin(), contacts.end(), [](contact const& a, contact const& b) { return a.other < b.other; });
+      all.counts.push_back(static_cast<std::uint32_t>(contacts.size()));
+      for (contact const& c : contacts) {
+        all.others.push_back(c.other);
+        all.values.insert(all.values.end(), c.own.numbers, c.own.numbers + contact_values<S, List>::width);
+      }
+    }
+    return all;
+  }
+
+ private:
+  struct contact {
+    id other;
+    contact_numbers<S, List> own;
+  };
+  std::vector<std::vector<contact>> of_;
+};
+
 /// An array with room for more than another, and the first `n` values of that, on the host.
 template <class Space, class T>
 buffer<T> grown(Space const& space, buffer<T> const& from, std::size_t n, std::size_t more) {
@@ -136,7 +179,9 @@ buffer<T> grown(Space const& space, buffer<T> const& from, std::size_t n, std::s
 }
 
 /// The memory of contacts. On the host the numbers of an item are together, on a device those of items side by side.
-template <class S, class List>
+///
+/// \tparam Mutual  two particles do the opposite to each other
+template <class S, class List, bool Mutual>
 class contact_memory {
  public:
   static constexpr int width = contact_values<S, List>::width;
@@ -173,6 +218,13 @@ class contact_memory {
     std::vector<id> others(all);
     if (all != 0) space.copy_to_host(kept.data(), kept_.data(), all);
     if (all != 0) space.copy_to_host(others.data(), kept_others_.data(), all);
+    if constexpr (Mutual) {
+      contacts_by_number<S, List> of(n);
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = ranges[i].first; k < std::size_t{ranges[i].first} + ranges[i].count; ++k)
+          of.add(static_cast<id>(i), others[k], kept[k]);
+      return of.sorted();
+    }
     saved_contacts<S> saved;
     for (auto const& r : ranges) {
       saved.counts.push_back(r.count);
@@ -186,20 +238,24 @@ class contact_memory {
   template <class Space>
   void restore(Space& space, saved_contacts<S> const& saved) {
     std::vector<kept_range> ranges;
-    std::vector<contact_numbers<S, List>> kept(saved.others.size());
-    std::uint32_t first = 0;
+    std::vector<contact_numbers<S, List>> kept;
+    std::vector<id> others;
+    std::size_t at = 0;
     for (std::uint32_t const count : saved.counts) {
-      ranges.push_back({first, count});
-      first += count;
+      auto const first = static_cast<std::uint32_t>(kept.size());
+      for (std::size_t const end = at + count; at < end; ++at) {
+        if (Mutual && saved.others[at] < ranges.size()) continue;
+        others.push_back(saved.others[at]);
+        kept.emplace_back();
+        std::copy_n(saved.values.data() + at * std::size_t(width), width, kept.back().numbers);
+      }
+      ranges.push_back({first, static_cast<std::uint32_t>(kept.size()) - first});
     }
-    for (std::size_t k = 0; k < kept.size(); ++k)
-      for (std::size_t w = 0; w < std::size_t(width); ++w)
-        kept[k].numbers[w] = saved.values[k * std::size_t(width) + w];
     if (!ranges.empty()) space.copy_from_host(kept_of_.data(), ranges.data(), ranges.size());
     reserve_kept(space.resource(), kept.size());
     if (kept.empty()) return;
     space.copy_from_host(kept_.data(), kept.data(), kept.size());
-    space.copy_from_host(kept_others_.data(), saved.others.data(), kept.size());
+    space.copy_from_host(kept_others_.data(), others.data(), kept.size());
   }
 
   void reserve(std::pmr::memory_resource* resource, std::size_t particles, std::size_t listed, std::size_t in_runs,
@@ -207,7 +263,7 @@ class contact_memory {
     std::size_t const items = listed * particles + in_runs;
     numbers_.reserve(resource, std::size_t(width) * items);
     are_side_by_side_ = side_by_side;
-    reserve_kept(resource, items);
+    reserve_kept(resource, kept_of(items));
     touching_.reserve(resource, particles);
     kept_of_.reserve(resource, particles);
     run_touching_.reserve(resource, in_runs);
@@ -221,7 +277,7 @@ class contact_memory {
   /// Makes room to keep more, once nothing is kept.
   template <class Space>
   void grow_kept(Space const& space, std::size_t more) {
-    reserve_kept(space.resource(), kept_.capacity() + more);
+    reserve_kept(space.resource(), kept_.capacity() + kept_of(more));
   }
   template <class Space>
   void clear(Space& space, std::size_t n) {
@@ -232,11 +288,13 @@ class contact_memory {
            run_touching_.bytes();
   }
   contact_memory_ref<S, List> ref() const {
-    return {numbers_.data(),      items_apart(), numbers_apart(),     touching_.data(),
-            run_touching_.data(), kept_.data(),  kept_others_.data(), kept_of_.data()};
+    return {numbers_.data(), items_apart(),       numbers_apart(), touching_.data(), run_touching_.data(),
+            kept_.data(),    kept_others_.data(), kept_of_.data(), kept_.capacity()};
   }
 
  private:
+  /// How many contacts there may be to keep in so many items of lists.
+  static std::size_t kept_of(std::size_t items) { return Mutual ? (items + 1) / 2 : items; }
   void reserve_kept(std::pmr::memory_resource* resource, std::size_t contacts) {
     kept_.reserve(resource, contacts);
     kept_others_.reserve(resource, contacts);
@@ -252,8 +310,8 @@ class contact_memory {
   buffer<kept_range> kept_of_;
   buffer<std::uint8_t> run_touching_;
 };
-template <class S>
-class contact_memory<S, columns<>> {
+template <class S, bool Mutual>
+class contact_memory<S, columns<>, Mutual> {
  public:
   void reserve(std::pmr::memory_resource*, std::size_t, std::size_t, std::size_t, bool) {}
   template <class Space>

@@ -49,8 +49,15 @@ struct simulation_state {
       !is_source<E> && detail::has_begin_step<E, execution_space, particles_type, S> && contains<writes_of<E>, alive>;
   static constexpr bool may_be_made = (may_make<Effect> || ...);
 
+  /// Particles near the mesh are listed anew with lists of neighbours, as a device finds out: where many threads work,
+  /// and only particles move.
+  static constexpr bool lists_near_mesh = effects_type::overlaps && effects_type::any_pair_contact &&
+                                          !effects_type::repeats && !works_alone<execution_space> && !has_bodies &&
+                                          !effects_type::any_inactive && !contains<columns, slow_steps> &&
+                                          !contains<columns, global_number>;
   /// Lists of neighbours tell how long particles far from the mesh stay far from it.
-  static constexpr bool knows_near_mesh = meets_once && effects_type::overlaps && !effects_type::repeats;
+  static constexpr bool knows_near_mesh =
+      lists_near_mesh || (meets_once && effects_type::overlaps && !effects_type::repeats);
   /// Particles may lie in the order of the cells of their lists while some steps are made: no effect asks for places.
   static constexpr bool has_cell_order =
       meets_once && !effects_type::has_clumps && !contains<columns, alive> &&

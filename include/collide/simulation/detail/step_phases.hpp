@@ -106,6 +106,7 @@ class step_phases {
         s_.neighbours.renew(s_.space, with_copies, s_.effects.space());
         if constexpr (state_type::meets_once) follow_lists();
         settle_births(with_copies, dt);
+        if constexpr (state_type::lists_near_mesh) list_near_mesh(dt, what);
         s_.neighbours.interact(s_.space, with_copies, s_.effects, dt, what);
       }
     } else if (!keeps_kicks) {
@@ -276,27 +277,40 @@ class step_phases {
   /// Particles press on the mesh. Where lists of neighbours tell who has moved, those far from the mesh are not asked
   /// again until lists are made anew, or a body has moved by their skin.
   void press(S dt, meeting what) {
-    auto const memory = s_.surfaces.ref(s_.particles.size);
+    if constexpr (!state_type::lists_near_mesh) list_near_mesh(dt, what);
     auto const triangles = mesh_ref<true>(s_, dt);
     using mesh_type = std::decay_t<decltype(triangles)>;
-    using memory_type = std::decay_t<decltype(memory)>;
-    bool const stays_listed = state_type::knows_near_mesh && what == meeting::in_step;
-    if (!stays_listed || !s_.is_pressing_known || has_body_moved()) {
-      using list_type = list_pressing<S, effects_type, mesh_type, memory_type>;
-      std::uint32_t const lanes = list_type::template lanes_for<execution_space>(s_.particles.size);
-      do {
-        s_.space.fill(s_.pressing_counts.data(), 0, 2 * sizeof(std::uint32_t));  // and the pool is empty
-        s_.space.for_each(lanes * s_.particles.size,
-                          list_type{s_.particles, s_.effects, triangles, memory, pressing(), what, lanes,
-                                    stays_listed ? margin_near_mesh(s_) : S(0)});
-      } while (must_list_again());
-      if constexpr (state_type::knows_near_mesh) s_.bodies.mark();
-    }
-    s_.is_pressing_known = stays_listed;
+    using memory_type = std::decay_t<decltype(s_.surfaces.ref(0))>;
     s_.space.for_each(execution_space::host_accessible ? *s_.pressing_counts.data() : s_.particles.size,
                       press_on_mesh<S, effects_type, mesh_type, memory_type>{
                           s_.particles, s_.effects, triangles, s_.surfaces.ref(s_.particles.size), pressing(),
                           overlap_pool_of(s_), dt, what});
+  }
+  void list_near_mesh(S dt, meeting what) {
+    auto const memory = s_.surfaces.ref(s_.particles.size);
+    auto const triangles = mesh_ref<true>(s_, dt);
+    using list_type = list_pressing<S, effects_type, std::decay_t<decltype(triangles)>, std::decay_t<decltype(memory)>>;
+    bool const stays_listed = state_type::knows_near_mesh && what == meeting::in_step;
+    std::uint32_t const lanes = list_type::template lanes_for<execution_space>(s_.particles.size);
+    auto const kernel = [&] {
+      return list_type{s_.particles, s_.effects, triangles, memory,
+                       pressing(),   what,       lanes,     stays_listed ? margin_near_mesh(s_) : S(0)};
+    };
+    std::size_t const threads = lanes * s_.particles.size;
+    if (!stays_listed || !s_.is_pressing_known || has_body_moved()) {
+      do {
+        s_.space.fill(s_.pressing_counts.data(), 0, 2 * sizeof(std::uint32_t));  // and the pool is empty
+        s_.space.for_each(threads, kernel());
+      } while (must_list_again());
+      if constexpr (state_type::knows_near_mesh && !state_type::lists_near_mesh) s_.bodies.mark();
+    } else if constexpr (state_type::lists_near_mesh) {
+      std::uint32_t const* const anew = s_.neighbours.rebuild();
+      do {
+        s_.space.for_each(1, begin_pressing{anew, s_.pressing_counts.data()});
+        for_each_if_nonzero(s_.space, anew, threads, kernel());
+      } while (must_list_again());
+    }
+    s_.is_pressing_known = stays_listed;
   }
   pressing_list pressing() const {
     return {s_.pressing_counts.data(), s_.pressing.data(), static_cast<std::uint32_t>(s_.pressing.capacity())};
@@ -315,7 +329,7 @@ class step_phases {
   }
   /// True if a body may have come to particles that are not listed as near the mesh.
   bool has_body_moved() const {
-    if constexpr (state_type::knows_near_mesh)
+    if constexpr (state_type::knows_near_mesh && !state_type::lists_near_mesh)
       return s_.bodies.moved() > 0.99 * static_cast<double>(s_.neighbours.skin());
     return false;
   }

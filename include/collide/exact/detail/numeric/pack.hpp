@@ -18,9 +18,14 @@
 namespace collide::detail {
 
 COLLIDE_HD_INLINE bool any(bool condition) { return condition; }
-template <class T>
-COLLIDE_HD_INLINE T const& either(bool condition, T const& a, T const& b) {
+template <class S>
+COLLIDE_HD_INLINE S either(bool condition, S a, S b) {
   return condition ? a : b;
+}
+/// Number by number: a GPU keeps two vectors in memory to one of which an address points.
+template <class S, std::enable_if_t<std::is_arithmetic<S>::value, int> = 0>
+COLLIDE_HD_INLINE vec3<S> either(bool condition, vec3<S> const& a, vec3<S> const& b) {
+  return {either(condition, a.x(), b.x()), either(condition, a.y(), b.y()), either(condition, a.z(), b.z())};
 }
 
 /// True of a type of numbers, and of some at a time.

@@ -89,11 +89,14 @@ struct clear_cells {
   COLLIDE_HD_INLINE void keep(std::uint32_t place) const {
     auto const& m = order.memory;
     std::uint32_t touching = 0;
-    order.for_each_remembered(place, [&](std::uint32_t, std::size_t) { ++touching; });
+    order.for_each_remembered(place, [&](std::uint32_t other, std::size_t) { touching += order.keeps(place, other); });
     std::uint32_t const first = fetch_add(&order.header->kept, touching);
+    if (first + std::size_t{touching} > m.kept_capacity) touching = 0;  // where lists have found no room
     m.kept_of[order.numbers[place]] = {first, touching};
+    if (touching == 0) return;
     std::uint32_t n = first;
     order.for_each_remembered(place, [&](std::uint32_t other, std::size_t item) {
+      if (!order.keeps(place, other)) return;
       m.kept[n].set(m.slot(item).values());
       m.kept_others[n++] = order.number_at(other);
     });
@@ -186,8 +189,8 @@ struct build_lists {
     mark_border(i, near.places, near.size);
     if constexpr (ordered::has_memory) {
       std::uint32_t touching = 0;
-      restore(i, near.places, near.size, [&](std::uint32_t n, auto const& record) {
-        order.memory.slot(n * order.capacity + i).set(record.values());
+      restore(i, near.places, near.size, [&](std::uint32_t n, auto const& values) {
+        order.memory.slot(n * order.capacity + i).set(values);
         touching |= 1u << n;
       });
       order.memory.touching[i] = touching;
@@ -233,28 +236,44 @@ struct build_lists {
     if constexpr (ordered::has_memory) {
       auto const& m = order.memory;
       for (std::uint32_t n = 0; n < size; ++n) m.run_touching[first + n] = 0;
-      restore(i, run, size, [&](std::uint32_t n, auto const& record) {
-        m.slot(order.run_item(first + n)).set(record.values());
+      restore(i, run, size, [&](std::uint32_t n, auto const& values) {
+        m.slot(order.run_item(first + n)).set(values);
         m.run_touching[first + n] = 1;
       });
     }
   }
 
-  /// write(n, record) for each kept contact of a particle with neighbour n of its list, which is at places[n]. Both are
-  /// in the order of numbers. What has just been born has not touched anything.
+  /// write(n, values) for each kept contact of a particle with neighbour n of its list, which is at places[n]. What has
+  /// just been born has not touched anything.
   template <class Write>
   COLLIDE_HD_INLINE void restore(std::uint32_t i, std::uint32_t const* places, std::uint32_t size,
                                  Write const& write) const {
     auto const& m = order.memory;
-    kept_range& kept = m.kept_of[order.numbers[i]];
-    std::uint32_t n = 0;
-    for (std::uint32_t k = kept.first; k < kept.first + kept.count; ++k) {
-      id const other = m.kept_others[k];
-      while (n < size && order.number_at(places[n]) < other) ++n;
-      if (n == size || order.number_at(places[n]) != other) continue;
-      if (!order.is_new(i) && !order.is_new(places[n])) write(n, m.kept[k]);
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t n = 0; n < size; ++n) {
+      bool const is_own = order.keeps(i, places[n]);
+      std::uint32_t const keeper = is_own ? i : places[n];
+      std::uint32_t const k = find_kept(order.numbers[keeper], order.number_at(is_own ? places[n] : i));
+      if (k == ordered::overflow_mark || order.is_new(i) || order.is_new(places[n])) continue;
+      write(n, is_own ? m.kept[k].values() : turned_round(m.kept[k].values()));
     }
-    kept.count = 0;
+  }
+  /// The kept contact of a particle, by its number in memory, with another.
+  COLLIDE_HD_INLINE std::uint32_t find_kept(id keeper, id other) const {
+    auto const& m = order.memory;
+    kept_range const kept = m.kept_of[keeper];
+    std::uint32_t low = kept.first, high = low + kept.count;
+    COLLIDE_NO_UNROLL
+    while (low < high) {
+      std::uint32_t const middle = low + (high - low) / 2;
+      if (m.kept_others[middle] == other) return middle;
+      if (m.kept_others[middle] < other) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    return ordered::overflow_mark;
   }
 
   /// Heap sort: nothing that calls itself, and no memory.

@@ -517,37 +517,18 @@ class pair_actions {
 
   /// The memory of contacts of the first `n` particles, by numbers.
   saved_contacts<S> saved(list_state const& header, id const* numbers, std::size_t n) const {
-    struct contact {
-      id other;
-      record const* from;
-      bool is_second;
-    };
-    std::vector<std::vector<contact>> of(n);
-    auto const add = [&](id a, id b, record const& from) {
-      of[a].push_back({b, &from, false});
-      of[b].push_back({a, &from, true});
-    };
+    contacts_by_number<S, remembered> of(n);
     if (header.count != 0) {
       items_type const now = items();
       for (std::uint32_t k = 0; k < now.firsts[header.count]; ++k)
         if ((now.marks[k] & now.remembers) != 0)
-          add(numbers[now.pairs[k].place], numbers[now.pairs[k].other], now.records[k]);
+          of.add(numbers[now.pairs[k].place], numbers[now.pairs[k].other], now.records[k]);
     } else if (was_saved_) {  // and waits for lists
       for (std::uint32_t i = 0; i < saved_; ++i)
         for (std::uint32_t k = before_.firsts[i]; k < before_.firsts[i + 1]; ++k)
-          add(i, before_.others[k], before_.records[k]);
+          of.add(i, before_.others[k], before_.records[k]);
     }
-    saved_contacts<S> all;
-    for (auto& contacts : of) {
-      std::sort(contacts.begin(), contacts.end(), [](contact const& a, contact const& b) { return a.other < b.other; });
-      all.counts.push_back(static_cast<std::uint32_t>(contacts.size()));
-      for (contact const& c : contacts) {
-        record const r = seen_from(c.is_second, *c.from);
-        all.others.push_back(c.other);
-        all.values.insert(all.values.end(), r.numbers, r.numbers + contact_values<S, remembered>::width);
-      }
-    }
-    return all;
+    return of.sorted();
   }
 
   /// After `clear`, for `n` particles: lists that are made have what was saved, as if places had been numbers.
@@ -615,17 +596,6 @@ class pair_actions {
     }
   }
 
-  /// A contact's memory, as the first or the second of the two has it.
-  static record seen_from(bool second, record const& from) {
-    record r = from;
-    if (has_memory && second) {
-      auto values = r.values();
-      values.for_each_number([&](S& x, int, int sign) { x = sign < 0 ? 0 - x : x; });
-      r.set(values);
-    }
-    return r;
-  }
-
   void restore(order const& o, std::uint32_t i, std::uint32_t j, std::uint32_t item) {
     std::uint8_t& mark = marks_.data()[item];
     mark = o.number_at(i) > o.number_at(j) ? items_type::is_upward : 0;
@@ -635,7 +605,8 @@ class pair_actions {
     std::uint32_t const from = before_.find(min(a, b), max(a, b));
     if (from == none) return;
     mark |= items_type::remembers;
-    records_.data()[item] = seen_from(a > b, before_.records[from]);
+    auto const values = before_.records[from].values();
+    records_.data()[item].set(a > b ? turned_round(values) : values);
   }
 
   buffer<std::uint32_t> firsts_, entry_firsts_, entries_;

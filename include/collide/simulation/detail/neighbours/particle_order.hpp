@@ -276,6 +276,11 @@ struct sorted_particles {
   /// The item of what is remembered of a neighbour in a run.
   COLLIDE_HD_INLINE std::size_t run_item(std::uint32_t n) const { return listed * capacity + n; }
 
+  /// True if the contact of two particles is kept with the first while lists are made anew.
+  COLLIDE_HD_INLINE bool keeps(std::uint32_t place, std::uint32_t other) const {
+    return !Effects::meets_once || number_at(place) < number_at(other);
+  }
+
   /// f(place, item) for the neighbours with which a particle has a contact that remembers something, in the order of
   /// their numbers.
   template <class F>

@@ -201,6 +201,8 @@ class verlet_list {
     }
   }
 
+  /// From `renew` until particles meet: not 0 in memory of the space if lists were made anew.
+  std::uint32_t const* rebuild() const { return &header_.data()->rebuild; }
   /// True if the last `renew` has made the lists anew; where particles meet once a pair.
   bool are_new() const { return are_new_; }
 
@@ -393,7 +395,7 @@ class verlet_list {
   buffer<reference<S, contains<typename Effects::all, radius>>> references_;
   buffer<column_element<alive, S>> known_;
   column_buffers<S, typename Effects::interaction_copies> memory_;
-  contact_memory<S, typename Effects::remembered> contacts_;
+  contact_memory<S, typename Effects::remembered, Effects::meets_once> contacts_;
   std::conditional_t<Once, pair_actions<S, Scene>, no_pair_actions> pairs_;
 };
 

@@ -133,6 +133,18 @@ struct pressing_list {
   std::uint32_t capacity;
 };
 
+/// Kernel functor of `for_each` over one item, before particles press again: the list is empty if it is to be made
+/// `anew`, and so is the pool of overlaps.
+struct begin_pressing {
+  std::uint32_t const* anew;
+  std::uint32_t* counts;  ///< of the list and of the pool
+
+  COLLIDE_HD void operator()(std::size_t) const {
+    if (*anew != 0) counts[0] = 0;
+    counts[1] = 0;
+  }
+};
+
 /// Forgets what the mesh gave to a particle.
 template <class State>
 COLLIDE_HD_INLINE void forget_mesh_kicks([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
