@@ -202,7 +202,7 @@ MUTATIONS = {
     "bounds-certain": ('a region is certain only if rounding does not matter', 'nearest', 'plain',
         [('certain = inside ? surely : certain;', 'certain = true;')]),
     "bounds-smallest": ('sizes at which flushed subnormal numbers show', 'nearest', 'plain',
-        [('size >= least && ', '')]),
+        [('size >= smallest && ', '')]),
     "bounds-least": ('a direction that the triangle reaches to both sides of separates nothing', 'nearest', 'plain',
         [('!(along > 0) || ', '')]),
     "nearest-tie": ('of equally near triangles the lowest number', 'nearest', 'plain',
