@@ -102,19 +102,32 @@ struct all_pairs_query {
   template <class Block>
   COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, std::uint32_t n, std::size_t first,
                               std::size_t base) const {
-    constexpr std::uint32_t per_thread = Block::items;
-    if constexpr (Block::num_threads == 1) {  // the triangle once for all of its spheres
-      s.count = 0;
-      for (std::uint32_t k = 0; k < n; ++k) {
-        std::size_t const triangle = base + s.encounters[k].triangle;
-        auto const around = bounding_sphere_of(pipeline.mesh[triangle]);
-        for (std::uint32_t j = 0; j < per_thread; ++j) {
-          test_one(block, s, first + j, triangle, [&] { return around; });
-          pipeline.drain_if_full(block, s.pipeline);
-        }
-      }
-      return;
+    if constexpr (Block::num_threads == 1) {
+      test_alone(block, s, n, first, base);
+    } else {
+      test_together(block, s, n, first, base);
     }
+  }
+
+  /// In a single thread: the bounding sphere of a triangle once for all of its spheres.
+  template <class Block>
+  COLLIDE_HD_INLINE void test_alone(Block& block, scratch<Block>& s, std::uint32_t n, std::size_t first,
+                                    std::size_t base) const {
+    s.count = 0;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      std::size_t const triangle = base + s.encounters[k].triangle;
+      auto const around = bounding_sphere_of(pipeline.mesh[triangle]);
+      for (std::uint32_t j = 0; j < std::uint32_t{Block::items}; ++j) {
+        test_one(block, s, first + j, triangle, [&] { return around; });
+        pipeline.drain_if_full(block, s.pipeline);
+      }
+    }
+  }
+
+  template <class Block>
+  COLLIDE_HD_INLINE void test_together(Block& block, scratch<Block>& s, std::uint32_t n, std::size_t first,
+                                       std::size_t base) const {
+    constexpr std::uint32_t per_thread = Block::items;
     for (std::uint32_t i = 0; i < n * per_thread; i += Block::num_threads) {
       block.for_each_thread([&](int thread_rank) {
         if (thread_rank == 0) s.count = 0;
