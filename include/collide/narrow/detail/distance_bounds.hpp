@@ -12,10 +12,9 @@ namespace collide::detail {
 
 /// Bounds of the distance of a triangle, computed in doubles.
 struct distance_bounds {
-  double low, high;      ///< of the distance
-  int foot;              ///< corners 0, 1 and 2, edges 3, 4 and 5, the face 6
-  bool certain;          ///< the closest point is that foot
-  vec3<double> towards;  ///< from the point to the closest one, about; 0 if that is not known
+  double low, high;  ///< of the distance
+  int foot;          ///< corners 0, 1 and 2, edges 3, 4 and 5, the face 6
+  bool certain;      ///< the closest point is that foot
 };
 
 /// Corner `i`, from 0 to 2.
@@ -37,10 +36,10 @@ COLLIDE_HD_INLINE bool is_same_point(vec3<S> const& p, vec3<S> const& q) {
 }
 
 /// Bounds of the distance of a finite triangle from a finite point. False if the triangle is farther than `reach`, with
-/// nothing but `low` set. A plane across `guess` may tell that soon: a direction, or 0.
+/// nothing but `low` set.
 template <class S>
 COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point, double reach,
-                                      vec3<double> const& guess, distance_bounds& found) {
+                                      distance_bounds& found) {
   constexpr double u = ieee_traits<double>::unit_roundoff, none = std::numeric_limits<double>::infinity();
   vec3<double> const a = difference_in_double(t.a, point), b = difference_in_double(t.b, point),
                      c = difference_in_double(t.c, point), ab = difference_in_double(t.b, t.a),
@@ -51,20 +50,9 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
   double const length = max(max(max_norm(ab), max_norm(ac)), smallest);
   // guard: bounds-smallest
   if (!(size >= smallest && size <= largest)) {
-    found = {0, size <= largest ? mul_rn(2.0, size) + 2 * smallest : none, 6, false, {0, 0, 0}};
+    found = {0, size <= largest ? mul_rn(2.0, size) + 2 * smallest : none, 6, false};
     return true;
   }
-  // guard: bounds
-  double const error = mul_rn(64 * u, size), beyond = reach + error;
-  auto const is_beyond = [&](vec3<double> const& g, double gg, double& along) {
-    along = min(min(dot_mul_add(a, g), dot_mul_add(b, g)), dot_mul_add(c, g));
-    // guard: bounds-least
-    if (!(along > 0) || !(gg > 0x1p-600)) return false;
-    return mul_rn(along, along) > mul_rn(mul_rn(beyond, beyond), gg);
-  };
-  double along;
-  // of near ones it hardly tells
-  if (2 * reach > length && is_beyond(guess, dot_mul_add(guess, guess), along)) return false;
   double const d1 = -dot_mul_add(ab, a), d2 = -dot_mul_add(ac, a), d3 = -dot_mul_add(ab, b), d4 = -dot_mul_add(ac, b),
                d5 = -dot_mul_add(ab, c), d6 = -dot_mul_add(ac, c);
   auto const minor = [](double p, double q, double r, double s) { return mul_add(p, q, -mul_rn(r, s)); };
@@ -96,14 +84,18 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
   auto const combined = [&](int k) { return a[k] + mul_add(v, ab[k], mul_rn(w, ac[k])); };
   vec3<double> const q = {combined(0), combined(1), combined(2)};
   if (foot < 3 && is_same_point(point, corner_of(t, foot))) {
-    found = {0, 0, foot, true, {0, 0, 0}};
+    found = {0, 0, foot, true};
     return true;
   }
+  // guard: bounds
+  double const error = mul_rn(64 * u, size), beyond = reach + error;
   found.low = 0;
   auto const is_separating = [&](vec3<double> const& g) {
-    double const gg = dot_mul_add(g, g);
-    if (is_beyond(g, gg, along)) return true;
-    if (along > 0 && gg > 0x1p-600) found.low = max(found.low, div_rn(along, sqrt_rn(gg)) - error);
+    double const gg = dot_mul_add(g, g), along = min(min(dot_mul_add(a, g), dot_mul_add(b, g)), dot_mul_add(c, g));
+    // guard: bounds-least
+    if (!(along > 0) || !(gg > 0x1p-600)) return false;
+    if (mul_rn(along, along) > mul_rn(mul_rn(beyond, beyond), gg)) return true;
+    found.low = max(found.low, div_rn(along, sqrt_rn(gg)) - error);
     return false;
   };
   if (is_separating(q)) return false;
@@ -114,7 +106,6 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
   found.high = sqrt_rn(dot_mul_add(q, q)) + error;
   found.foot = foot;
   found.certain = certain;
-  found.towards = q;
   return true;
 }
 

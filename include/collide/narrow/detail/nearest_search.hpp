@@ -46,9 +46,7 @@ class exact_nearest_search {
 
   COLLIDE_HD void consider(triangle<S> const& corners, id number) {
     distance_bounds found;
-    if (high_ < 0 || number == number_ || !is_finite(corners)) return;
-    vec3<double> const guess = COLLIDE_ON_DEVICE(vec3<double>(0, 0, 0), towards_);  // on a device it takes registers
-    if (!bound_distance(corners, point_, high_, guess, found)) return;
+    if (high_ < 0 || number == number_ || !is_finite(corners) || !bound_distance(corners, point_, high_, found)) return;
     if (found.low > high_) return;
     bool nearer = number_ == no_id || found.high < low_;
     if (!nearer) {
@@ -62,7 +60,6 @@ class exact_nearest_search {
     if (!nearer) return;
     low_ = found.low;
     foot_ = found.foot;
-    towards_ = found.towards;
     certain_ = found.certain;
     corners_ = corners;
     number_ = number;
@@ -113,8 +110,7 @@ class exact_nearest_search {
   double low_ = 0,
          high_;  ///< bounds of the distance; without a triangle `high_` is the reach, below 0 if there is none
   int foot_ = 0;
-  vec3<double> towards_{0, 0, 0};  ///< the nearest triangle so far: what is behind it is farther
-  bool certain_ = false;           ///< the foot is exact
+  bool certain_ = false;  ///< the foot is exact
   triangle<S> corners_;
   id number_ = no_id;
 
