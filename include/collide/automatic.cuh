@@ -178,7 +178,7 @@ struct automatic {
         auto const around = detail::bounding_sphere_of(mesh_[mesh_.size() / m * k]);
         for (std::size_t i = 0; i < n; ++i) {
           auto const s = detail::swept_bounding_sphere(spheres[spheres.size() / n * i]);
-          near += around.overlaps(s.centre, s.radius) ? 1 : 0;
+          near += around.overlaps(s.centre, s.radius);
         }
       }
       return n * m == 0 ? 0 : static_cast<double>(near * mesh_.size()) / static_cast<double>(n * m);

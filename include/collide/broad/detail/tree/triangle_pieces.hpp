@@ -319,7 +319,7 @@ class sampled_triangles {
   double boxes(Spheres const& spheres, std::size_t max_spheres) const {
     std::size_t reached = 0;
     each_sample(spheres, max_spheres, [&](sphere<S> const& s) {
-      for (int k = 0; k < count_; ++k) reached += boxes_[k].overlaps(s.centre, s.radius) ? 1 : 0;
+      for (int k = 0; k < count_; ++k) reached += boxes_[k].overlaps(s.centre, s.radius);
     });
     return static_cast<double>(reached) * scale(min(spheres.size(), max_spheres));
   }
