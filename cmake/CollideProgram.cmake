@@ -51,11 +51,13 @@ if(COLLIDE_QUICK_BUILD)
   target_precompile_headers(quick_eigen PRIVATE <Eigen/Core>)
 endif()
 
-# collide_quick_build(NAME): a target of that kind
+# collide_quick_build(NAME [OWN_HEADERS]): a target of that kind, which precompiles headers of its own
 function(collide_quick_build name)
   if(COLLIDE_QUICK_BUILD)
     target_compile_options(${name} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:${COLLIDE_QUICK_OPTIONS}>")
-    target_precompile_headers(${name} REUSE_FROM quick_eigen)
+    if(NOT "OWN_HEADERS" IN_LIST ARGN)
+      target_precompile_headers(${name} REUSE_FROM quick_eigen)
+    endif()
   endif()
 endfunction()
 
