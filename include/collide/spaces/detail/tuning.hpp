@@ -105,7 +105,7 @@ inline constexpr tree_cost_model tree_costs_of_steps{0, 50, 500, 400, 0, 0};
 template <class Space>
 struct broad_phase_costs {
   static constexpr broad_phase_cost_model value = Space::host_accessible
-                                                      ? broad_phase_cost_model{80, 0.137, 4, 30, 22000, 13, 64}
+                                                      ? broad_phase_cost_model{80, 0.137, 4, 30, 5000, 13, 64}
                                                       : broad_phase_cost_model{0, 1.9, 0.012, 0.1, 30000};
 };
 
