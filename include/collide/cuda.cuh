@@ -80,14 +80,19 @@ __global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<Kernel, 
 }
 
 /// Threads of a block of `for_each`, of which none wait for each other: few, so that little work is on all processors,
-/// and threads with many registers fill them.
-inline constexpr int threads_of_for_each = 64;
+/// and threads with many registers fill them; many where all processors are full and threads do little, as a device
+/// starts a block a nanosecond.
+inline constexpr int few_threads_of_for_each = 64, many_threads_of_for_each = 256;
+template <class F>
+inline constexpr int max_threads_of_for_each =
+    min_blocks_per_sm<F, void> > 1 ? few_threads_of_for_each : many_threads_of_for_each;
 
 template <class F>
-__global__ void __launch_bounds__(threads_of_for_each, (min_blocks_per_sm<F, void>)) run_for_each(std::size_t n, F f) {
+__global__ void __launch_bounds__(max_threads_of_for_each<F>, (min_blocks_per_sm<F, void>))
+    run_for_each(std::size_t n, F f) {
   pdl_wait();  // first: blocks of the next kernel would take the room of those that it waits for
   pdl_launch_dependents();
-  std::size_t const i = std::size_t{blockIdx.x} * threads_of_for_each + threadIdx.x;
+  std::size_t const i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
   if (i < n) f(i);
 }
 
@@ -152,8 +157,10 @@ class cuda_space {
   template <class F>
   void for_each(std::size_t n, F const& f) const {
     if (n == 0) return;
-    launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n, threads_of_for_each), threads_of_for_each, n,
-                  f);
+    constexpr std::size_t threads_at_a_time = 2048;  // of a processor
+    int const threads = n > threads_at_a_time * static_cast<std::size_t>(sm_count_) ? max_threads_of_for_each<F>
+                                                                                    : few_threads_of_for_each;
+    launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n, threads), threads, n, f);
   }
 
   /// Puts work on the stream that sets `bytes` bytes. A little is filled by a kernel: in a graph, between kernels, that
