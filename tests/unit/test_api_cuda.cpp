@@ -68,6 +68,12 @@ void check_turns(cudaStream_t stream) {
   }
 }
 
+/// Kernel functor of `for_each`: counts the calls of each item.
+struct count_calls {
+  unsigned char* calls;
+  __device__ void operator()(std::size_t i) const { ++calls[i]; }
+};
+
 /// Where the radii of spheres are.
 float const* radii_of(collide::sphere_view<float> spheres) {
   float const* last = nullptr;
@@ -98,6 +104,23 @@ TEST_CASE("api: sinks on the device") {
 TEST_CASE("api: the baseline precision on the device") {
   tests::check_baseline<collide::all_pairs>(collide::cuda_shared());
   tests::check_baseline<collide::bucket>(collide::cuda());
+}
+
+TEST_CASE("api: each item has one call, in small blocks and in large ones") {
+  collide::cuda const space;
+  int processors = 0;
+  collide::cuda_check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, 0), "cudaDeviceGetAttribute");
+  std::size_t const full = std::size_t{2048} * static_cast<std::size_t>(processors);
+  collide::buffer<unsigned char> memory;
+  for (std::size_t const n : {std::size_t{1}, std::size_t{65}, full, full + 1, 4 * full + 255}) {
+    unsigned char* const calls = memory.reserve(space.resource(), n + 256);
+    space.fill(calls, 0, n + 256);
+    space.for_each(n, count_calls{calls});
+    std::vector<unsigned char> found(n + 256), expected(n + 256);
+    std::fill_n(expected.begin(), n, static_cast<unsigned char>(1));
+    space.copy_to_host(found.data(), calls, found.size());
+    CHECK(found == expected);
+  }
 }
 
 TEST_CASE("api: uploads to the device") { tests::check_uploads(collide::cuda_shared()); }
