@@ -54,8 +54,13 @@ template <class S>
 bool is_on_its_side(row<S> const& r) {
   if (r.side == r.none) return true;
   detail::ray_parity<S> parity(r.point());
-  for (std::size_t i = 0; i < r.count; ++i) parity.consider(r.triangle(i));
-  return parity.inside() == (r.side == r.inside);
+  detail::ray_parity_in_lanes<S> in_lanes(r.point());
+  for (std::size_t i = 0; i < r.count; ++i) {
+    parity.consider(r.triangle(i));
+    in_lanes.consider(r.triangle(i));
+  }
+  bool const is_inside = r.side == r.inside;
+  return parity.inside() == is_inside && in_lanes.result().inside() == is_inside;
 }
 
 /// A distance of exactly the reach.

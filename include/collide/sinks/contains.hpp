@@ -11,6 +11,7 @@
 #include <collide/narrow/detail/intersects.hpp>
 #include <collide/sinks/detail/array_in_space.hpp>
 #include <collide/sinks/detail/search_mesh.hpp>
+#include <collide/spaces/detail/multiversion.hpp>
 
 namespace collide {
 
@@ -39,6 +40,10 @@ class ray_parity {
     return !done_;
   }
 
+  COLLIDE_HD ray_parity const& result() const { return *this; }
+  /// Takes a triangle that has been looked at: it is crossed above the point, or nowhere.
+  COLLIDE_HD_INLINE void add(bool crossed) { odd_ = odd_ != crossed; }
+
   /// True if the point is on a triangle.
   COLLIDE_HD bool on_surface() const { return on_surface_; }
   /// True if the point is inside or on the surface.
@@ -64,12 +69,73 @@ class ray_parity {
   }
 };
 
+#if !defined(__CUDA_ARCH__)
+
+/// `ray_parity` of triangles that wait until there are as many as lanes in the vector unit.
+template <class S>
+class ray_parity_in_lanes {
+ public:
+  explicit ray_parity_in_lanes(vec3<S> const& point) : parity_(point), point_(point) {}
+
+  bool consider(triangle<S> const& t) {
+    // the first one is in all lanes, so that none is without
+    if (waiting_ == 0) {
+      for (int k = 0; k < width; ++k) put(k, t);
+    } else {
+      put(waiting_, t);
+    }
+    return ++waiting_ < width || look();
+  }
+
+  /// The parity of all that were considered.
+  ray_parity<S> const& result() {
+    if (waiting_ > 0) look();
+    return parity_;
+  }
+
+ private:
+  static constexpr int width = 8;
+
+  alignas(32) S corners_[9][width];
+  ray_parity<S> parity_;
+  vec3<S> point_;
+  int waiting_ = 0;
+
+  COLLIDE_HD_INLINE void put(int k, triangle<S> const& t) {
+    for (int i = 0; i < 3; ++i) corners_[i][k] = t.a[i], corners_[3 + i][k] = t.b[i], corners_[6 + i][k] = t.c[i];
+  }
+  COLLIDE_HD_INLINE triangle<S> waiting(int k) const {
+    return {{corners_[0][k], corners_[1][k], corners_[2][k]},
+            {corners_[3][k], corners_[4][k], corners_[5][k]},
+            {corners_[6][k], corners_[7][k], corners_[8][k]}};
+  }
+
+  bool look() {
+    bool goes_on = true;
+    std::int32_t crossed[width];
+    multiversioned([&] {
+      for (int k = 0; k < width; ++k) crossed[k] = cross_ray_in_lane(waiting(k), point_[0], point_[1], point_[2]);
+    });
+    for (int k = 0; k < waiting_; ++k) {
+      if (crossed[k] < 0) {
+        goes_on = parity_.consider(waiting(k));
+      } else {
+        parity_.add(crossed[k] != 0);
+      }
+    }
+    waiting_ = 0;
+    return goes_on;
+  }
+};
+
+#endif
+
 /// The parity that tells if a point is inside the mesh. `Search` is a `mesh_search`.
 template <class S, class Search>
 COLLIDE_HD ray_parity<S> parity_of(vec3<S> const& point, mesh_view<S> const& mesh, Search const& search) {
-  ray_parity<S> parity(point);
+  COLLIDE_ON_DEVICE(ray_parity<S>, ray_parity_in_lanes<S>) parity(point);
   search.on_ray([&](id t) { return parity.consider(mesh[t]); });
-  return parity;
+  return parity.result();
 }
 
 /// Search functor of `contains` for each point.

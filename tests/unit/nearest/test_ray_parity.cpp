@@ -1,5 +1,6 @@
 /// Inside and outside of closed meshes against the oracle.
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -25,6 +26,13 @@ collide::detail::ray_parity<S> parity(triangles<S> const& mesh, collide::vec3<S>
 }
 
 template <class S>
+collide::detail::ray_parity<S> parity_in_lanes(triangles<S> const& mesh, collide::vec3<S> const& p) {
+  collide::detail::ray_parity_in_lanes<S> found(p);
+  for (auto const& t : mesh) found.consider(t);
+  return found.result();
+}
+
+template <class S>
 std::vector<oracle::triangle> to_oracle(triangles<S> const& mesh) {
   std::vector<oracle::triangle> all;
   for (auto const& t : mesh) all.push_back(tests::to_oracle(t));
@@ -45,14 +53,14 @@ struct tally {
 
   template <class S>
   void add(triangles<S> const& mesh, std::vector<oracle::triangle> const& exact, collide::vec3<S> const& p) {
-    auto const found = parity(mesh, p);
     bool const expected = oracle::inside(exact, tests::to_oracle(p));
     bool touched = false;
     for (auto const& t : exact) touched = touched || oracle::hit(t, {tests::to_oracle(p), 0});
     ++cases;
     inside += expected;
     on_surface += touched;
-    wrong += found.inside() != expected || found.on_surface() != touched;
+    for (auto const& found : {parity(mesh, p), parity_in_lanes(mesh, p)})
+      wrong += found.inside() != expected || found.on_surface() != touched;
   }
 };
 
@@ -162,7 +170,7 @@ TEST_CASE_TEMPLATE("parity: the largest and the smallest coordinates", S, float,
 TEST_CASE_TEMPLATE("parity: what doubles decide is so, beside edges and the plane, whatever the exponents", S, float,
                    double) {
   tests::dice roll(12);
-  int decided = 0, wrong = 0;
+  int decided = 0, wrong = 0, decided_in_lanes = 0;
   for (int n = 0; n < 40000; ++n) {
     S const scale = std::ldexp(S(1), roll.integer(-140, 100)), least = std::numeric_limits<S>::denorm_min();
     auto const corner = [&] {
@@ -179,16 +187,21 @@ TEST_CASE_TEMPLATE("parity: what doubles decide is so, beside edges and the plan
     for (bool const flushed : {false, true}) {
       auto crossing = collide::detail::ray_crossing::none;
       bool known;
+      std::int32_t in_lane;
       {
         std::optional<tests::flush_to_zero> flush;
         if (flushed) flush.emplace();
         known = collide::detail::cross_ray_in_double(t, p, crossing);
+        in_lane = collide::detail::cross_ray_in_lane(t, p[0], p[1], p[2]);
       }
+      decided_in_lanes += in_lane >= 0;
+      wrong += in_lane >= 0 && (in_lane == 1) != (expected == collide::detail::ray_crossing::above);
       decided += known;
       wrong += known && crossing != expected;
     }
   }
   CHECK(decided > 20000);
+  CHECK(decided_in_lanes > 4000);
   CHECK(wrong == 0);
 }
 
@@ -200,4 +213,7 @@ TEST_CASE_TEMPLATE("parity: what is not finite", S, float, double) {
   mesh.push_back({{0, 0, 5}, {nan, 0, 5}, {0, 1, 5}});
   mesh.push_back({{-9, -9, 5}, {9, -9, 5}, {0, infinity, 5}});
   CHECK(parity<S>(mesh, {S(0.5), S(0.25), S(0.5)}).inside());
+  CHECK_FALSE(parity_in_lanes<S>(mesh, {nan, S(0.5), S(0.5)}).inside());
+  CHECK_FALSE(parity_in_lanes<S>(mesh, {S(0.5), S(0.5), -infinity}).inside());
+  CHECK(parity_in_lanes<S>(mesh, {S(0.5), S(0.25), S(0.5)}).inside());
 }

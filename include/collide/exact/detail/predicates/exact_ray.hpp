@@ -7,6 +7,8 @@
 /// need not know that they share a corner.
 #pragma once
 
+#include <cstdint>
+
 #include <collide/exact/detail/numeric/exact_sum.hpp>
 #include <collide/exact/detail/predicates/exact.hpp>
 
@@ -40,6 +42,32 @@ COLLIDE_HD_INLINE bool cross_ray_in_double(triangle<S> const& t, vec3<S> const& 
   double const height_error = mul_rn(128 * u, mul_rn(area, size));
   if (along > height_error) crossing = ray_crossing::above;
   return along > height_error || along < -height_error;
+}
+
+/// Decides in the type of the coordinates and without a branch, for lanes of a host's vector unit: 1 if the ray from
+/// (x, y, z) crosses the triangle above its beginning, 0 if it does not, -1 if that is not decided. Errors are as
+/// there, with M the largest coordinate across the ray and N along it: of sides 16 u M^2, of the height 128 u M^2 N.
+template <class S>
+std::int32_t cross_ray_in_lane(triangle<S> const& t, S x, S y, S z) {
+  constexpr S u = ieee_traits<S>::unit_roundoff;
+  constexpr bool is_float = sizeof(S) == sizeof(float);
+  constexpr S smallest = is_float ? S(0x1p-30) : S(0x1p-70), largest = is_float ? S(0x1p40) : S(0x1p140);
+  S const ax = t.a[0] - x, ay = t.a[1] - y, az = t.a[2] - z, bx = t.b[0] - x, by = t.b[1] - y, bz = t.b[2] - z,
+          cx = t.c[0] - x, cy = t.c[1] - y, cz = t.c[2] - z;
+  auto const larger = [](auto p, auto q) { return select(p > q, p, q); };
+  auto const size = [](S p) { return to_bits(p) & ~ieee_traits<S>::sign_mask; };  // NaN and infinity sort last
+  auto const across =
+      larger(larger(larger(size(ax), size(ay)), larger(size(bx), size(by))), larger(size(cx), size(cy)));
+  auto const along = larger(larger(size(az), size(bz)), size(cz));
+  auto const is_usual = [&](auto bits) { return (bits >= to_bits(smallest)) & (bits <= to_bits(largest)); };
+  S const ab = ax * by - ay * bx, bc = bx * cy - by * cx, ca = cx * ay - cy * ax, sum = bc * az + ca * bz + ab * cz;
+  S const least = -larger(larger(-ab, -bc), -ca), most = larger(larger(ab, bc), ca);
+  S const width = from_bits<S>(across), area = width * width, height = select(least > 0, sum, -sum);
+  // guard: lane-sides, lane-along
+  S const error = 16 * u * area, height_error = 128 * u * area * from_bits<S>(along);
+  bool const beside = (least < -error) & (most > error), within = (least > error) | (most < -error);
+  bool const above = within & (height > height_error), below = within & (height < -height_error);
+  return select(is_usual(across) & is_usual(along), select(above, 1, select(beside | below, 0, -1)), -1);
 }
 
 COLLIDE_HD inline int sign_of(double x) { return x < 0 ? -1 : (x > 0 ? 1 : 0); }
