@@ -36,6 +36,7 @@ struct box_walls {
 
   template <class Particle, class Forces, class S>
   COLLIDE_HD_INLINE void end_step(Particle& p, Forces const& forces, S dt) const {
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       S& x = p[position{}][k];
       S const low = S(lower[k]) + p.radius(), high = S(upper[k]) - p.radius();

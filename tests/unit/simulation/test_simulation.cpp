@@ -1,4 +1,7 @@
 /// Simulations on the host.
+#include <algorithm>
+#include <vector>
+
 #include <collide/effects/absorb.hpp>
 
 #include "compositions.hpp"
@@ -38,11 +41,34 @@ struct asked : karabassi_swept<> {
   }
 };
 
+/// An effect of a user's: writes down which particles it meets.
+struct visited {
+  using writes = columns<collide::velocity>;
+  std::vector<collide::id>* numbers;
+  template <class Particle, class S>
+  void accelerate(Particle& p, S) const {
+    numbers->push_back(p.number());
+  }
+};
+
 }  // namespace
 
 TEST_CASE_TEMPLATE("simulation: free flight follows the closed form", S, float, double) {
   tests::check_free_flight<S>(host(2));
   tests::check_free_flight<S>(tests::lockstep<256, false>());
+}
+
+TEST_CASE("simulation: every step on the host goes forwards through memory, which is read ahead") {
+  tests::world<float> w;
+  for (int i = 0; i < 256; ++i) w.particle(i, 0, 0);
+  std::vector<collide::id> numbers;
+  tests::running<simulation<plain, visited>> made(host(1), w, visited{&numbers});
+  for (int step = 0; step < 2; ++step) {
+    numbers.clear();
+    made.simulation.step(1);
+    CHECK(numbers.size() == 256);
+    CHECK(std::is_sorted(numbers.begin(), numbers.end()));
+  }
 }
 
 TEST_CASE("simulation: bounces are e^(2n) as high, and end in rest") {

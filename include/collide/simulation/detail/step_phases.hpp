@@ -349,14 +349,14 @@ class step_phases {
     (s_.space.fill(s_.particles.at(Kick{}), 0, 3 * s_.particles.size * sizeof(S)), ...);
   }
 
-  /// Moves particles, and resolves their contacts with the mesh.
+  /// Moves particles, and resolves their contacts with the mesh. A CPU reads memory ahead, and so always goes forwards.
   void move(S dt) {
     if (s_.particles.size == 0) return;
     auto const triangles = mesh_ref<effects_type::any_mesh_contact>(s_, dt);
     using kernel_type = typename state_type::template step_kernel_type<std::decay_t<decltype(triangles)>>;
-    kernel_type const kernel{
-        {s_.particles, s_.effects, triangles, s_.overflow.data(), dt, s_.reverse_order, s_.min_radius},
-        kernel_type::grid_size(s_.space, s_.particles.size)};
+    bool const reverse = s_.reverse_order && !works_alone<execution_space>;
+    kernel_type const kernel{{s_.particles, s_.effects, triangles, s_.overflow.data(), dt, reverse, s_.min_radius},
+                             kernel_type::grid_size(s_.space, s_.particles.size)};
     s_.reverse_order = !s_.reverse_order;
     s_.space.launch(kernel.blocks, kernel);
   }
