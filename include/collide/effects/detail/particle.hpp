@@ -94,11 +94,8 @@ struct particle<S, columns<C...>> : column_slot<C, S>... {
 /// The number that effects know a particle by: where it is in memory, or among those of all ranks.
 template <class S, class List>
 COLLIDE_HD_INLINE id number_of(particle<S, List> const& p) {
-  if constexpr (contains<List, global_number>) {
-    return p[global_number{}];
-  } else {
-    return p.name;
-  }
+  if constexpr (contains<List, global_number>) return p[global_number{}];
+  return p.name;
 }
 
 /// Says that a particle has touched something, where it may fall asleep.
@@ -183,11 +180,8 @@ struct particle_state<S, columns<C...>>
   }
 
   COLLIDE_HD_INLINE S radius_at(std::size_t i) const {
-    if constexpr (contains<list, radius>) {
-      return at(radius{})[i];
-    } else {
-      return common_radius;
-    }
+    if constexpr (contains<list, radius>) return at(radius{})[i];
+    return common_radius;
   }
 
   /// One particle.
@@ -260,11 +254,8 @@ struct particle_state<S, columns<C...>>
  private:
   template <class P>
   COLLIDE_HD_INLINE S radius_of(P const& p) const {
-    if constexpr (contains<typename P::list, radius>) {
-      return p[radius{}];
-    } else {
-      return common_radius;
-    }
+    if constexpr (contains<typename P::list, radius>) return p[radius{}];
+    return common_radius;
   }
 
   template <class D>
@@ -322,11 +313,8 @@ struct particle_state<S, columns<C...>>
 /// The number that effects know the particle at a place by.
 template <class S, class List>
 COLLIDE_HD_INLINE id number_of(particle_state<S, List> const& state, std::size_t i) {
-  if constexpr (contains<List, global_number>) {
-    return state.at(global_number{})[i];
-  } else {
-    return state.name_at(i);
-  }
+  if constexpr (contains<List, global_number>) return state.at(global_number{})[i];
+  return state.name_at(i);
 }
 
 /// The memory of a column.

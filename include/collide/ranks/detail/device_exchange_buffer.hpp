@@ -190,11 +190,8 @@ class device_exchange {
   static constexpr bool can_be_direct = is_valid<ranks_exchange_in_space, Ranks, Space>;
 
   bool is_direct() const {
-    if constexpr (can_be_direct && is_valid<ranks_takes_device_memory, Ranks>) {
-      return ranks_.takes_device_memory();
-    } else {
-      return can_be_direct;
-    }
+    if constexpr (can_be_direct && is_valid<ranks_takes_device_memory, Ranks>) return ranks_.takes_device_memory();
+    return can_be_direct;
   }
 
   Ranks const& ranks_;

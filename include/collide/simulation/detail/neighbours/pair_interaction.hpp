@@ -143,11 +143,8 @@ struct pair_interaction {
     }
   }
   COLLIDE_HD_INLINE bool is_inactive(interaction& p) const {
-    if constexpr (Effects::any_inactive) {
-      return effects.is_inactive(p);
-    } else {
-      return false;
-    }
+    if constexpr (Effects::any_inactive) return effects.is_inactive(p);
+    return false;
   }
 };
 

@@ -179,11 +179,8 @@ struct sorted_particles {
 
   /// The number of the particle at a place, in the order of which its neighbours meet it.
   COLLIDE_HD_INLINE id number_at(std::uint32_t place) const {
-    if constexpr (contains<copied, global_number>) {
-      return copies.at(global_number{})[place];
-    } else {
-      return number_of_place(place);
-    }
+    if constexpr (contains<copied, global_number>) return copies.at(global_number{})[place];
+    return number_of_place(place);
   }
   COLLIDE_HD_INLINE id number_of_place(std::size_t place) const {
     if constexpr (Effects::may_be_reordered) {
@@ -194,11 +191,8 @@ struct sorted_particles {
 
   /// True of a particle that a source had just made when the lists were made.
   COLLIDE_HD_INLINE bool is_new([[maybe_unused]] std::uint32_t place) const {
-    if constexpr (has_absent) {
-      return known[numbers[place]] >= newborn;
-    } else {
-      return false;
-    }
+    if constexpr (has_absent) return known[numbers[place]] >= newborn;
+    return false;
   }
 
   /// True if the surfaces of two particles are less than `skin` apart.

@@ -57,11 +57,9 @@ struct step_kernel {
   static std::size_t grid_size([[maybe_unused]] Space const& space, std::size_t particles) {
     using block = typename Space::template block<step_kernel>;
     std::size_t const tiles = tile_count<block>(particles);
-    if constexpr (has_many_tiles<block>) {
+    if constexpr (has_many_tiles<block>)
       return min(tiles, min(space.saturating_blocks(), space.template max_resident_blocks<step_kernel>()));
-    } else {
-      return tiles;
-    }
+    return tiles;
   }
 
   template <class Block, bool Touches>
