@@ -3,7 +3,7 @@
 #pragma once
 
 #include <collide/effects/detail/effect_list.hpp>
-#include <collide/exact/detail/numeric/random.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 
 namespace collide {
 

@@ -17,7 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <collide/broad/detail/grid/cell_coverage.hpp>
+#include <collide/broad/detail/grid/grid.hpp>
 #include <collide/broad/detail/grid/occupancy.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/exact/detail/numeric/rounding.hpp>

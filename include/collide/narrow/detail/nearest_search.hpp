@@ -5,7 +5,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/core/nearest_triangle.hpp>
+#include <collide/core/contact.hpp>
 #include <collide/core/precision.hpp>
 #include <collide/mesh.hpp>
 #include <collide/narrow/detail/contact_in_precision.hpp>

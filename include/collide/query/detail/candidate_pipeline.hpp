@@ -8,7 +8,7 @@
 
 #include <collide/core/detail/detected.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/narrow/detail/intersects.hpp>
 #include <collide/query/hit.hpp>
 #include <collide/spaces/detail/atomic.hpp>

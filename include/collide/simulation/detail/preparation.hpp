@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <collide/simulation/detail/step/lookup_space.hpp>
 #include <collide/simulation/detail/step_phases.hpp>
+#include <collide/spaces/detail/tuning.hpp>
 
 namespace collide::detail {
 

@@ -23,8 +23,8 @@
 #include <collide/broad/detail/grid/triangle_cells.hpp>
 #include <collide/core/memory.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/exact/detail/geometry/sphere_pack.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
 #include <collide/narrow/detail/traits.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/atomic.hpp>

@@ -13,7 +13,6 @@
 #include <collide/core/memory.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/mesh.hpp>
-#include <collide/spaces/detail/aggregated_count.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 #include <collide/spaces/detail/block.hpp>
 

@@ -12,9 +12,9 @@
 #include <collide/broad/detail/grid/grid.hpp>
 #include <collide/broad/detail/tree/tree_node.hpp>
 #include <collide/core/memory.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/exact/detail/geometry/closest_point.hpp>
 #include <collide/exact/detail/geometry/local_triangle.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
 

@@ -8,7 +8,6 @@
 #include <collide/effects/detail/effect_list.hpp>
 #include <collide/exact/detail/numeric/float_bits.hpp>
 #include <collide/exact/detail/numeric/rounding.hpp>
-#include <collide/simulation/detail/neighbours/first_neighbours.hpp>
 #include <collide/simulation/detail/neighbours/particle_order.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include <collide/effects/detail/effect_list.hpp>
-#include <collide/simulation/detail/neighbours/first_neighbours.hpp>
 #include <collide/simulation/detail/neighbours/particle_order.hpp>
 
 namespace collide::detail {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include <collide/core/geometry.hpp>
 #include <collide/effects/detail/contact_memory.hpp>
 #include <collide/effects/detail/particle.hpp>
 #include <collide/exact/detail/numeric/repeating_box.hpp>
@@ -23,6 +24,38 @@ COLLIDE_HD_INLINE void prefetch([[maybe_unused]] void const* value) {
   __builtin_prefetch(value, Written);
 #endif
 }
+
+/// The first of neighbours in the order of their numbers.
+template <std::uint32_t Room>
+struct first_neighbours {
+  id numbers[Room];
+  std::uint32_t places[Room];
+  std::uint32_t size = 0;
+  bool complete = true;
+
+  /// Once each, also if it is added again.
+  COLLIDE_HD_INLINE void add(id number, std::uint32_t place) {
+    if (size == Room && number > numbers[Room - 1]) {
+      complete = false;
+      return;
+    }
+    std::uint32_t at = size;
+    COLLIDE_NO_UNROLL
+    while (at > 0 && numbers[at - 1] > number) --at;
+    if (at > 0 && numbers[at - 1] == number) return;
+    if (size == Room) {
+      complete = false;
+      --size;
+    }
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = size++; k > at; --k) {
+      numbers[k] = numbers[k - 1];
+      places[k] = places[k - 1];
+    }
+    numbers[at] = number;
+    places[at] = place;
+  }
+};
 
 /// Centre and radius of a particle, which decide whether two overlap, to be read at once.
 template <class S>

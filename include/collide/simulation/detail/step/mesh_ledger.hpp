@@ -3,8 +3,9 @@
 /// where effects are told of it.
 #pragma once
 
+#include <collide/effects/detail/effect_list.hpp>
+#include <collide/simulation/detail/bodies/bodies_ref.hpp>
 #include <collide/simulation/detail/bodies/moving_mesh.hpp>
-#include <collide/simulation/detail/step/step_context.hpp>
 
 namespace collide::detail {
 
