@@ -10,6 +10,7 @@
 #include <collide/core/contact.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
 #include <collide/sinks/detail/output.hpp>
+#include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/host_array.hpp>
 
 namespace collide::detail {
@@ -43,16 +44,7 @@ struct find_bounds {
   std::uint64_t const* spheres;
   std::uint64_t* bounds;
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::size_t low = 0, high = size;
-    while (low < high) {
-      std::size_t const middle = (low + high) / 2;
-      if (pairs[middle].sphere < spheres[i]) {
-        low = middle + 1;
-      } else {
-        high = middle;
-      }
-    }
-    bounds[i] = low;
+    bounds[i] = first_not_before(std::size_t{0}, size, [&](std::size_t k) { return pairs[k].sphere < spheres[i]; });
   }
 };
 

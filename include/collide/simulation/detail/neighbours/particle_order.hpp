@@ -204,12 +204,6 @@ struct sorted_particles {
     return p;
   }
 
-  /// On a CPU: what is loaded soon is on its way.
-  COLLIDE_HD_INLINE void fetch(std::size_t i) const {
-    prefetch(spheres + i);
-    fetch_columns(i, copied{});
-  }
-
   /// The number of the particle at a place, in the order of which its neighbours meet it.
   COLLIDE_HD_INLINE id number_at(std::uint32_t place) const {
     if constexpr (contains<copied, global_number>) return copies.at(global_number{})[place];
@@ -329,11 +323,6 @@ struct sorted_particles {
   }
 
  private:
-  template <class... C>
-  COLLIDE_HD_INLINE void fetch_columns([[maybe_unused]] std::size_t i, columns<C...>) const {
-    (prefetch(copies.at(C{}) + i * std::size_t(column_layout<C, S>::width)), ...);
-  }
-
   COLLIDE_HD_INLINE bool is_small([[maybe_unused]] std::uint32_t i) const {
     if constexpr (sizes_differ) return references[i].radius <= small.largest;
     return false;
