@@ -91,7 +91,6 @@ struct mesh_lookup {
   }
 };
 
-/// The lookup of `all_pairs`.
 template <class S>
 struct all_pairs_ref : mesh_lookup<S> {
   COLLIDE_HD all_pairs_ref const& opened() const { return *this; }

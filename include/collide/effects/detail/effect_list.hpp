@@ -97,7 +97,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
                                               second_supported_by, third_support, third_supported_by>>;
 
  public:
-  /// All columns of the simulation.
   using all = union_of<named, pair_kicks, clump_kicks, held_columns, support_columns, mesh_kick_columns>;
 
  private:

@@ -48,7 +48,6 @@ using column_element = typename column_layout<C, S>::element;
 template <class C, class S>
 inline constexpr std::size_t column_bytes = sizeof(column_element<C, S>) * std::size_t(column_layout<C, S>::width);
 
-/// The initial value of a column.
 template <class C, class S>
 using initial_member = decltype(C::template initial<S>);
 template <class C, class S>
@@ -69,7 +68,6 @@ struct column_slot {
   column_value<C, S> value;
 };
 
-/// A particle with the columns of a list.
 template <class S, class List>
 struct particle;
 template <class S, class... C>
@@ -104,7 +102,6 @@ COLLIDE_HD_INLINE void mark_contact([[maybe_unused]] particle<S, List>& p) {
   if constexpr (contains<List, in_contact>) p[in_contact{}] = 1;
 }
 
-/// A particle with the initial values of all columns.
 template <class S, class... C>
 COLLIDE_HD_INLINE void set_initial_values(particle<S, columns<C...>>& p) {
   ((p[C{}] = initial_of<C, S>()), ...);
@@ -184,7 +181,6 @@ struct particle_state<S, columns<C...>>
     return common_radius;
   }
 
-  /// One particle.
   template <class... D>
   COLLIDE_HD_INLINE void load(particle<S, columns<D...>>& p, std::size_t i) const {
     p.number = static_cast<id>(i);
@@ -193,7 +189,6 @@ struct particle_state<S, columns<C...>>
     p.the_radius = radius_of(p);
   }
 
-  /// The columns `E` of one particle.
   template <class P, class... E>
   COLLIDE_HD_INLINE void load(P& p, [[maybe_unused]] std::size_t i, columns<E...>) const {
     (load_value(E{}, p[E{}], i), ...);
@@ -317,13 +312,11 @@ COLLIDE_HD_INLINE id number_of(particle_state<S, List> const& state, std::size_t
   return state.name_at(i);
 }
 
-/// The memory of a column.
 template <class C, class S>
 struct buffer_of {
   buffer<column_element<C, S>> memory;
 };
 
-/// The memory of all columns.
 template <class S, class List>
 struct column_buffers;
 template <class S, class... C>

@@ -52,7 +52,6 @@ struct long_projection {
   bool certain;      ///< doubles leave no doubt of which feet there are
 };
 
-/// A long triangle rounded to doubles.
 struct rounded_triangle {
   vec3<double> corner[3], edge[3];
   double length_squared[3];  ///< of the edges

@@ -141,7 +141,6 @@ class bisection {
     double edge(std::size_t bin) const { return lower + 2 * (half * (static_cast<double>(bin) / bins)); }
   };
 
-  /// Finds where the nodes of a level are cut.
   template <class Ranks, class S>
   void cut(Ranks const& ranks, std::vector<std::size_t> const& level, std::vector<std::uint32_t> const& at,
            std::vector<S> const& centres) {

@@ -95,7 +95,6 @@ class device_exchange_buffer {
   void from_host(Space const& space) {
     if constexpr (!Space::host_accessible) space.copy_from_host(data(), on_host_.data(), size_);
   }
-  /// Makes room for them on the host.
   template <class Space>
   void ensure_host_capacity(Space const& space) {
     if constexpr (!Space::host_accessible) on_host_.resize(space, size_);

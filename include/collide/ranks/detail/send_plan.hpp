@@ -87,9 +87,7 @@ class send_plan {
 
   std::size_t size() const { return list_.size(); }
   pair const* data() const { return list_.data(); }
-  /// How many items go to a rank.
   std::uint64_t count(std::size_t rank) const { return ends_[rank + 1] - ends_[rank]; }
-  /// How many items go to each rank.
   std::vector<std::uint64_t> counts() const {
     std::vector<std::uint64_t> all;
     for (std::size_t r = 0; r + 1 < ends_.size(); ++r) all.push_back(count(r));

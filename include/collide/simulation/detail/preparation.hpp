@@ -12,7 +12,6 @@
 
 namespace collide::detail {
 
-/// Particles as spheres.
 template <class S, class Columns>
 sphere_view<S> spheres_of(particle_state<S, Columns> const& particles) {
   S const* const xyz = particles.at(position{});

@@ -199,7 +199,6 @@ class step_phases {
   }
 
  private:
-  /// Runs a kernel functor over all particles.
   template <class Kernel>
   void for_each(Kernel const& kernel) {
     s_.space.for_each(s_.particles.size, kernel);
@@ -334,7 +333,6 @@ class step_phases {
     return false;
   }
 
-  /// After lists of neighbours may have been made anew.
   void follow_lists() {
     if (!s_.neighbours.are_new()) return;
     s_.is_pressing_known = false;
@@ -349,7 +347,6 @@ class step_phases {
     (s_.space.fill(s_.particles.at(Kick{}), 0, 3 * s_.particles.size * sizeof(S)), ...);
   }
 
-  /// Moves particles, and resolves their contacts with the mesh.
   void move(S dt) {
     if (s_.particles.size == 0) return;
     auto const triangles = mesh_ref<effects_type::any_mesh_contact>(s_, dt);

@@ -63,7 +63,6 @@ struct measured_radii {
   grid_reaches<S> reaches;
 };
 
-/// The grids that an index has.
 template <class S>
 struct grid_set {
   buffer<grid<S>> memory;
@@ -300,7 +299,6 @@ class cell_index {
     grids_.memory.reserve(space.resource(), max_grids);
   }
 
-  /// Chooses the cells of the grids.
   template <class Space, class Spheres>
   void plan_cells(Space& space, wanted_grids<S> const& wanted, grid_reaches<S> const* reaches, Spheres const& spheres,
                   float sphere_count, [[maybe_unused]] mesh_view<S> const* mesh) {

@@ -167,7 +167,6 @@ class sorted_spheres {
     space.launch(kernel.blocks(), kernel);
   }
 
-  /// The groups of the triangles.
   grouped_mesh<S> const& mesh() const { return mesh_; }
 
   /// Marks the cells that triangles of the mesh measured last touch. To be called for new grids, the cells of each of

@@ -78,7 +78,6 @@ struct cell_box {
   std::uint32_t lower[3], upper[3];
 };
 
-/// Cells of one width.
 template <class S>
 struct grid_level {
   S width, inverse_width;
@@ -152,7 +151,6 @@ struct grid_header {
     return l.coordinate(x - lower[axis]);
   }
 
-  /// True if it serves spheres of this radius.
   COLLIDE_HD_INLINE bool serves(S radius) const { return radius <= reach; }
 
   /// True if a point is inside its box. Without branches, for the CPU's vector unit.

@@ -148,7 +148,6 @@ class curve_order {
     sort_.sort(space, 3 * find_places<S>::bits + 1);
   }
 
-  /// The ids of the triangles in order.
   id const* ids() const { return sort_.ids_in_order(); }
   /// The places of the triangles on the curve, which rise.
   std::uint64_t const* places() const { return sort_.places_in_order(); }

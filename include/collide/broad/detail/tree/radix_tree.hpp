@@ -266,7 +266,6 @@ struct fit_boxes {
   }
 };
 
-/// Makes the tree.
 template <class S>
 class radix_tree {
  public:

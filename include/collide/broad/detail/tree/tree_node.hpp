@@ -146,7 +146,6 @@ struct tree_node : tree_boxes {
     child[k] = what;
   }
 
-  /// The box around all of its boxes.
   COLLIDE_HD_INLINE aabb<float> box() const {
     aabb<float> all = aabb<float>::empty();
     for (int i = 0; i < 3; ++i) {

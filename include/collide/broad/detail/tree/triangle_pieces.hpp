@@ -66,7 +66,6 @@ struct triangle_shape {
   }
 };
 
-/// The box of a triangle in doubles.
 template <class S>
 aabb<double> wide_box_of(triangle<S> const& t) {
   aabb<S> const b = triangle_aabb_of(t);

@@ -12,7 +12,6 @@
 
 namespace collide::detail {
 
-/// The sine and the cosine of an angle.
 struct sin_cos {
   double sin, cos;
 };

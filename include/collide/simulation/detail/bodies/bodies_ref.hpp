@@ -117,7 +117,6 @@ struct bodies_ref {
   }
 };
 
-/// True for lookups of meshes of which parts move.
 template <class Triangles>
 inline constexpr bool has_moving_mesh = false;
 template <class S, class Triangles>

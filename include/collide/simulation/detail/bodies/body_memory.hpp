@@ -13,7 +13,6 @@
 
 namespace collide::detail {
 
-/// Constants of a body.
 struct body_record {
   body_motion motion;
   vec3<double> centre;  ///< of its bounding sphere, in its frame

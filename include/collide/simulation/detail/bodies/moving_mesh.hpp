@@ -166,7 +166,6 @@ struct moving_mesh : mesh_view<S> {
   }
 };
 
-/// True for meshes of which parts move.
 template <class Mesh>
 inline constexpr bool is_moving_mesh = false;
 template <class S>

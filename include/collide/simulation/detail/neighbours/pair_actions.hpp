@@ -357,7 +357,6 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
   }
 };
 
-/// In place of `pair_actions`.
 struct no_pair_actions {
   static std::size_t bytes() { return 0; }
 };
@@ -477,7 +476,6 @@ class pair_actions {
     was_saved_ = has_before_ = false;
   }
 
-  /// Before `n` particles meet.
   void begin_meeting(std::pmr::memory_resource* resource, std::size_t n) {
     if (actions_ == nullptr) give_to_step(resource, n, pairs_.capacity());
   }

@@ -11,7 +11,6 @@
 
 namespace collide::detail {
 
-/// Interaction of particles that overlap.
 template <class S, class Effects>
 struct pair_interaction {
   particle_state<S, typename Effects::all> state;
@@ -23,7 +22,6 @@ struct pair_interaction {
  protected:
   using interaction = typename sorted_particles<S, Effects>::interaction;
 
-  /// A particle before and after.
   struct pair_state {
     interaction self, changed;
     bool met = false, woken = false;

@@ -90,7 +90,6 @@ struct small_cells {
   }
 };
 
-/// State of the lists of all particles.
 struct list_state {
   std::uint32_t rebuild;    ///< not 0: the lists are to be made anew
   std::uint32_t count;      ///< how many particles are in the order
@@ -99,7 +98,6 @@ struct list_state {
   std::uint32_t forgotten;  ///< not 0: there was no room for what some contact remembers
 };
 
-/// State of the lists on ranks.
 struct list_state_on_ranks : list_state {
   std::uint32_t at_border;  ///< how many particles have copies of other ranks' on their list
 };
@@ -286,7 +284,6 @@ struct sorted_particles {
     if (curve != nullptr) store_relaxed(curve + place / cells.stride, cells.on_curve(cells.of(x.x(), x.y(), x.z())));
   }
 
-  /// Place of a particle's cell in the table.
   COLLIDE_HD_INLINE std::uint32_t place_in_table(vec3<S> const& x, [[maybe_unused]] S own_radius) const {
     if constexpr (sizes_differ) {
       if (own_radius <= small.largest) return small.number(small.cells.of(x.x(), x.y(), x.z()));

@@ -105,7 +105,6 @@ struct contact_history : remaining_motion<S, IsSwept> {
     ++contacts_here;
     return contacts[slot];
   }
-  /// The contact `i` before the last one.
   COLLIDE_HD_INLINE recorded_contact<S, HasBodies> const& before_last(int i) const {
     return contacts[(contact_count - 1 - i) % max_recorded_contacts];
   }

@@ -181,7 +181,6 @@ struct integration {
     }
   }
 
-  /// Moves a particle of a discrete step.
   COLLIDE_HD_INLINE void move(integrated& p) const {
     if constexpr (may_ride) {
       if (int const frame = frame_ridden(p)) {
@@ -265,7 +264,6 @@ struct integration {
     integrate(block, s, first, p, inactive, filter);
   }
 
-  /// Bodies that move wake particles that sleep.
   static constexpr bool may_wake = has_bodies && contains<typename effects_type::inactive_reads, slow_steps>;
 
   /// True of a particle that sleeps where a body that moves may touch it.
