@@ -33,10 +33,7 @@ std::size_t lost_count(Simulation const& simulation) {
 }
 
 /// For how many steps so far the displacement was lost to rounding; see `lost_motion`.
-struct lost_steps {
-  template <class S>
-  using value = std::uint32_t;
-};
+struct lost_steps : detail::column_of<std::uint32_t> {};
 
 /// Counts, for each particle, the steps whose displacement, velocity times dt, is not 0 but too small to change any
 /// coordinate: less than half a unit in the last place of the position. Such a particle does not move, whatever its

@@ -227,7 +227,6 @@ struct take_first {
   }
 };
 
-/// True for sinks that search the bodies one after the other.
 template <class Sink>
 inline constexpr bool searches_bodies = std::is_same<Sink, collide::contains>::value;
 template <class S>

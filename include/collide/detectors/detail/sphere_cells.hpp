@@ -196,7 +196,6 @@ struct order_spheres {
   }
 };
 
-/// Spheres in the order of cells, and its memory.
 template <class S>
 class sphere_cell_lists {
   using table = spatial_hash<double>;

@@ -175,7 +175,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   static constexpr bool may_be_reordered = false;  ///< see cell_order.hpp
   static constexpr unsigned action_width =
       mutual_effect::action_width > 4 && contains<all, slide_push> ? 13 : mutual_effect::action_width;
-  /// Calls f(effect) for the one, on the host.
   template <class F>
   void for_mutual(F const& f) const {
     f(of<mutual_effect>());
@@ -184,7 +183,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
   static constexpr bool makes = (is_source<E> || ...);
-  /// How many particles a source makes in the time `dt`.
   double due([[maybe_unused]] double dt) const {
     if constexpr (makes) return of<source>().rate * dt;
     return 0;
@@ -289,7 +287,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
     ask<has_on_mesh_contact>(p, [&](auto const& e, auto& seen) COLLIDE_HOT { e.on_mesh_contact(seen, t, dt); });
     ask<has_after_mesh_contact>(p, [&](auto const& e, auto& seen) COLLIDE_HOT { e.after_mesh_contact(seen, t, dt); });
   }
-  /// Tells effects of what the mesh gives to a particle.
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_impulse(P& p, mesh_impulse<S> const& given, S dt) const {
     ask<has_on_mesh_impulse>(p, [&](auto const& e, auto& seen) COLLIDE_HOT { e.on_mesh_impulse(seen, given, dt); });
@@ -347,7 +344,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       f(of<F>(), seen);
     }
   }
-  /// The velocity of the medium around a particle.
   template <class P>
   COLLIDE_HD_INLINE vec3<double> flow_around(P& p) const {
     if constexpr (!flows) return {0, 0, 0};

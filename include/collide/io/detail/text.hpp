@@ -82,7 +82,6 @@ class text_lines {
     return true;
   }
 
-  /// The next word of the line, or none.
   std::string_view word() {
     line_.remove_prefix(std::min(line_.find_first_not_of(" \t\r"), line_.size()));
     auto const w = line_.substr(0, line_.find_first_of(" \t\r"));

@@ -32,7 +32,6 @@ struct subdomain {
 struct subdomain_lookup {
   subdomain const* subdomains;
 
-  /// The rank in whose subdomain a point is.
   template <class S>
   COLLIDE_HD int rank_at(S const* x) const {
     std::size_t i = 0;

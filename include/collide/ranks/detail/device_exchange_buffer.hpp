@@ -100,7 +100,6 @@ class device_exchange_buffer {
     if constexpr (!Space::host_accessible) on_host_.resize(space, size_);
     host_ = Space::host_accessible ? data() : on_host_.data();
   }
-  /// The items on the host, once there is room.
   T* on_host() const { return host_; }
 
  private:

@@ -79,7 +79,6 @@ class particle_exchange {
   using space_type = typename Part::space_type;
 
  public:
-  /// Forgets the subdomains: there are other particles.
   void clear() { is_divided_ = false; }
 
   /// Brings particles to the ranks in whose subdomains they are, and finds out which copies go where.

@@ -72,7 +72,6 @@ class step_phases {
           "not know clumps");
   }
 
-  /// The part of a step before particles meet.
   void begin_step(S dt) {
     (begin_step_of<Effect>(dt), ...);
     if constexpr (effects_type::makes && effects_type::remembers_surfaces) {
@@ -128,7 +127,6 @@ class step_phases {
       for_each(take_marks_off{s_.particles.at(alive{})});
   }
 
-  /// The part of a step after particles have met.
   void end_step(S dt) {
     if constexpr (effects_type::has_clumps)
       for_each(step_clumps<S, effects_type, true>{s_.particles, s_.effects, s_.effects.space(), dt});

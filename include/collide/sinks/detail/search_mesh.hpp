@@ -16,7 +16,6 @@ namespace collide::detail {
 template <class Query, class F>
 using query_search = decltype(std::declval<Query const&>().search(std::declval<F const&>()));
 
-/// A sink that searches one of the parts of a mesh.
 template <class F>
 struct search_part {
   F f;
@@ -83,7 +82,6 @@ struct renumber_pairs {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = {sphere[from[i].sphere], triangle[from[i].triangle]}; }
 };
 
-/// A triangle with its number in the whole mesh.
 template <class S>
 struct numbered_triangle {
   id number;

@@ -12,7 +12,6 @@ namespace collide::detail {
 /// plain one.
 inline thread_local bool single_threaded = false;
 
-/// Sets `single_threaded` of this thread for a scope.
 class single_threaded_scope {
  public:
   explicit single_threaded_scope(bool alone) { single_threaded = alone; }

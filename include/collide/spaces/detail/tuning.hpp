@@ -46,7 +46,6 @@ struct default_bucket_tuning<false> : device_bucket_tuning {};
 template <class Space>
 struct bucket_tuning : detail::default_bucket_tuning<Space::host_accessible> {};
 
-/// How `bvh` makes its tree in a space.
 template <class Space>
 struct bvh_tuning {
   /// True if triangles are divided by the areas of boxes, which takes longer and finds faster than to sort them, and is

@@ -26,7 +26,6 @@ struct mesh_measures {
   buffer<triangle_aabb<S>> box_memory;
   bool has_boxes = false;  ///< of this mesh
 
-  /// The boxes of the triangles; null if there are none.
   triangle_aabb<S> const* boxes() const { return has_boxes ? box_memory.data() : nullptr; }
 
   /// The statistics of no triangles.

@@ -60,7 +60,6 @@ struct triangle_group {
     all.padding = reduced(padding, [](S a, S b) { return max(a, b); });
   }
 
-  /// True if there is a triangle `i`, and it is finite.
   bool has(std::uint32_t i) const { return (there >> i & 1) != 0; }
 
   triangle_aabb<S> box(std::uint32_t i) const {

@@ -15,7 +15,6 @@
 
 namespace collide::detail {
 
-/// A triangle, and where it is on a curve through space.
 struct triangle_on_curve {
   std::uint32_t place;
   id number;

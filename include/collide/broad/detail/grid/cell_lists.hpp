@@ -122,7 +122,6 @@ struct enter_triangles {
     s.slabs[slot] = cells.slabs();
   }
 
-  /// Enters a triangle into all cells that its box meets.
   COLLIDE_HD_INLINE void enter_box(triangle_cells<S> const& cells, id triangle) const {
     cell_box const& r = cells.range();
     std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,

@@ -99,7 +99,6 @@ inline std::size_t extra_pieces(std::size_t triangles, int wanted) {
   return min(max(3 * triangles, std::size_t{1} << 18), static_cast<std::size_t>(wanted - 1) * triangles);
 }
 
-/// Cuts the triangles of a mesh for which that pays.
 template <class S>
 class triangle_pieces {
  public:
@@ -347,7 +346,6 @@ class sampled_triangles {
   }
 
  private:
-  /// Calls f with up to `max_spheres` of the spheres.
   template <class Spheres, class F>
   static void each_sample(Spheres const& spheres, std::size_t max_spheres, F const& f) {
     std::size_t const n = min(spheres.size(), max_spheres);

@@ -513,7 +513,6 @@ class pair_actions {
     return room_.all(resource, bytes);
   }
 
-  /// The memory of contacts of the first `n` particles, by numbers.
   saved_contacts<S> saved(list_state const& header, id const* numbers, std::size_t n) const {
     contacts_by_number<S, remembered> of(n);
     if (header.count != 0) {

@@ -291,7 +291,6 @@ struct sorted_particles {
     return cells.number(cells.of(x.x(), x.y(), x.z()));
   }
 
-  /// The item of what is remembered of a neighbour in a run.
   COLLIDE_HD_INLINE std::size_t run_item(std::uint32_t n) const { return listed * capacity + n; }
 
   /// True if the contact of two particles is kept with the first while lists are made anew.

@@ -26,7 +26,6 @@ struct stored_vec3 {
   COLLIDE_HD_INLINE vec3<S> get() const { return {components[0], components[1], components[2]}; }
 };
 
-/// How high a point is above a plane.
 template <class S>
 COLLIDE_HD_INLINE S height_above(stored_vec3<S> const& on_plane, stored_vec3<S> const& normal, vec3<S> const& x) {
   S above = 0;

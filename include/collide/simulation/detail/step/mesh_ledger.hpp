@@ -107,7 +107,6 @@ COLLIDE_HD_INLINE vec3<double> carried(body_frame<S> const& f, vec3<double> cons
   return f.now.to_world(f.before.to_local(x));
 }
 
-/// How the surface moves that a particle sticks to.
 struct ridden_surface {
   vec3<double> before, after;  ///< its velocity when the step begins, and ends
   vec3<double> drift;          ///< velocity on the straight line on which it takes the particle in the step

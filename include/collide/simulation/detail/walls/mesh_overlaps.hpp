@@ -120,7 +120,6 @@ struct begin_pressing {
   }
 };
 
-/// Forgets what the mesh gave to a particle.
 template <class State>
 COLLIDE_HD_INLINE void forget_mesh_kicks([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
   if constexpr (contains<typename State::list, mesh_kick_count>) {
