@@ -47,9 +47,8 @@ struct long_projection {
   int number;
   double_double distance;
   vec3<double> normal;  ///< from there to the centre, of any length
-  double
-      sine_squared;  ///< of an angle of the triangle, where the accuracy depends on that, else 1; 0 if this is no foot
-  bool certain;      ///< doubles leave no doubt of which feet there are
+  double sine_squared;  ///< of an angle of the triangle, where the accuracy depends on it, else 1; 0: this is no foot
+  bool certain;         ///< doubles leave no doubt of which feet there are
 };
 
 struct rounded_triangle {
