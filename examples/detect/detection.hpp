@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <collide/core/contact.hpp>
-#include <collide/core/nearest_triangle.hpp>
 
 #include "../io/csv.hpp"
 #include "../io/obj.hpp"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <collide/core/contact.hpp>
-#include <collide/core/nearest_triangle.hpp>
 
 #include "output.hpp"
 #include "progress.hpp"

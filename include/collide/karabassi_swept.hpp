@@ -2,7 +2,7 @@
 /// Karabassi's intersection test for moving spheres: continuous collision detection.
 #pragma once
 
-#include <collide/core/impact.hpp>
+#include <collide/core/contact.hpp>
 #include <collide/core/precision.hpp>
 #include <collide/exact/detail/geometry/local_sweep.hpp>
 #include <collide/exact/detail/predicates/filter_swept.hpp>

@@ -1,5 +1,6 @@
 /// \file
-/// A colliding pair of a sphere and a triangle, and its contact: where and how the two touch.
+/// A colliding pair of a sphere and a triangle, its contact and its impact: where and how the two touch; and the
+/// nearest triangle of a point.
 #pragma once
 
 #include <cstdint>
@@ -47,6 +48,25 @@ struct contact {
   vec3<S> normal;  ///< unit vector from the triangle to the centre; a normal of the triangle if the centre is on it
   S distance;      ///< from the centre to the triangle
   S depth;         ///< radius - distance: how deep the triangle is in the sphere; next to 0 at a time of impact
+  collide::feature feature;     ///< the feature of the triangle that `point` lies in
+  std::uint32_t feature_index;  ///< edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
+};
+
+/// First contact of a moving sphere and a triangle within a step. It has no padding: equal impacts are equal bytes.
+template <class S>
+struct impact {
+  collide::contact<S> contact;  ///< at the time of impact
+  S time;                       ///< of impact, as a fraction of the step, 0 to 1; 0 if the two overlap at the beginning
+};
+
+/// The nearest triangle to a point, lengths in the units of the scene. Where there is none `triangle` is `no_id`,
+/// `distance` +infinity, and what else has the type `S` NaN.
+template <class S>
+struct nearest_triangle {
+  vec3<S> point;                ///< closest point of the triangle
+  vec3<S> barycentric;          ///< weights of the corners a, b and c that give `point`: not negative, their sum is 1
+  S distance;                   ///< from the point that was asked for to the triangle
+  id triangle;                  ///< number of the triangle; of equally near ones the lowest
   collide::feature feature;     ///< the feature of the triangle that `point` lies in
   std::uint32_t feature_index;  ///< edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
 };

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <collide/broad/detail/grid/memory_plan.hpp>
-#include <collide/core/nearest_triangle.hpp>
+#include <collide/core/contact.hpp>
 #include <collide/detector.hpp>
 #include <collide/detectors/detail/found_query.hpp>
 #include <collide/sinks/detail/search_mesh.hpp>

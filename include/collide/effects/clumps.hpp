@@ -3,7 +3,7 @@
 #pragma once
 
 #include <collide/effects/detail/effect_list.hpp>
-#include <collide/exact/detail/numeric/random.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 
 namespace collide {
 
@@ -20,16 +20,10 @@ struct clump_velocity : detail::vector_column {};
 struct clump_momentum : detail::vector_column {};
 
 /// The rotation from the frame of the principal axes: a unit quaternion w, x, y, z.
-struct clump_rotation {
-  template <class S>
-  using value = detail::several<S, 4>;
-};
+struct clump_rotation : detail::four_column {};
 
 /// The principal moments of inertia over the mass, length squared; and the radius of a sphere of the same volume.
-struct clump_inertia {
-  template <class S>
-  using value = detail::several<S, 4>;
-};
+struct clump_inertia : detail::four_column {};
 
 /// Spheres move in clumps, as `set_clumps` has placed them (place_clumps.hpp); the others are grains by themselves. A
 /// clump has the density of its spheres' material, and the volume of its shape. The spheres of one have consecutive

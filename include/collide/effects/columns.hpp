@@ -61,10 +61,18 @@ struct number_column {
   template <class S>
   using value = S;
 };
-/// Column of a small integer.
-struct byte_column {
+/// Column of a number of a certain type.
+template <class T>
+struct column_of {
   template <class S>
-  using value = std::uint8_t;
+  using value = T;
+};
+/// Column of a small integer.
+using byte_column = column_of<std::uint8_t>;
+/// Column of four numbers of the simulation's scalar.
+struct four_column {
+  template <class S>
+  using value = several<S, 4>;
 };
 
 }  // namespace detail
@@ -142,10 +150,7 @@ struct mesh_kicks {
 };
 
 /// Triangle and body of each of `mesh_kicks`.
-struct mesh_kicks_by {
-  template <class S>
-  using value = detail::several<id, 2 * mesh_kicks::contacts>;
-};
+struct mesh_kicks_by : detail::column_of<detail::several<id, 2 * mesh_kicks::contacts>> {};
 
 /// How many `mesh_kicks` there are.
 struct mesh_kick_count : detail::byte_column {};
@@ -172,9 +177,7 @@ struct third_supported_by : detail::byte_column {};
 
 /// The number of the first sphere of the clump that a sphere is of; `no_id` of one that is a grain by itself. See
 /// `clumps`.
-struct in_clump {
-  template <class S>
-  using value = id;
+struct in_clump : detail::column_of<id> {
   template <class S>
   static constexpr id initial = no_id;  ///< of a grain by itself
 };
@@ -204,9 +207,6 @@ struct slide_turn : vector_column {};
 }  // namespace detail
 
 /// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
-struct global_number {
-  template <class S>
-  using value = id;
-};
+struct global_number : detail::column_of<id> {};
 
 }  // namespace collide

@@ -12,10 +12,7 @@ namespace collide {
 namespace detail {
 
 /// Column of a sum of many small numbers.
-struct sum_column {
-  template <class S>
-  using value = double;
-};
+using sum_column = column_of<double>;
 
 // changes of a particle's velocity and spin in a step by walls
 struct walls_push : vector_column {};

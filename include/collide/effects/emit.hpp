@@ -7,7 +7,7 @@
 #include <collide/effects/clumps.hpp>
 #include <collide/effects/detail/particle.hpp>
 #include <collide/effects/effect.hpp>
-#include <collide/exact/detail/numeric/random.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 
 namespace collide {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <collide/core/contact.hpp>
-#include <collide/core/impact.hpp>
 #include <collide/mesh.hpp>
 #include <collide/narrow/detail/traits.hpp>
 

@@ -94,11 +94,8 @@ struct no_part {
 };
 template <class E>
 std::size_t size_of_parameters() {
-  if constexpr (is_valid<for_each_part_call, E, no_part>) {
-    return bytes_of_parameters(E()).size();
-  } else {
-    return sizeof(E);
-  }
+  if constexpr (is_valid<for_each_part_call, E, no_part>) return bytes_of_parameters(E()).size();
+  return sizeof(E);
 }
 
 template <class E>

@@ -41,9 +41,9 @@ struct contact_counts {
   double coordination = 0;     ///< contacts of a particle, the mean of all that are alive
   std::size_t deep = 0;        ///< contacts whose overlap is above a fifth of the smaller radius: too soft
   double largest_overlap = 0;  ///< over the smaller radius
-  double longest_good_step =
-      0;  ///< a fifth of the time in which a wave crosses the smallest sphere (Rayleigh); of
-          ///< `linear` and `sphere_contact` of a 1/5 collision; infinite without contacts' effects
+  /// A fifth of the time in which a wave crosses the smallest sphere (Rayleigh); of `linear` and `sphere_contact` a
+  /// fifth of a collision; infinite without contacts' effects.
+  double longest_good_step = 0;
 
   bool is_good_step(double dt) const { return dt <= longest_good_step; }  ///< not above it
   /// Throws `error` if a contact is deep.
@@ -241,11 +241,6 @@ struct spring_energies {
     tangential += other.tangential;
     return *this;
   }
-  COLLIDE_HD_INLINE spring_energies& operator-=(spring_energies const& other) {
-    elastic -= other.elastic;
-    tangential -= other.tangential;
-    return *this;
-  }
 };
 
 /// The energy of a law's springs between a particle and the mesh: for `sum_over_mesh_contacts`.
@@ -255,9 +250,10 @@ struct springs_at_mesh {
 
   template <class Seen, class S, class Values>
   COLLIDE_HD_INLINE spring_energies operator()(Seen const& self, mesh_overlap<S> const& wall, Values& values) const {
-    spring_energies found = at(self, wall, wall.overlap, values);
-    if (wall.has_saddle()) found -= at(self, wall, wall.saddle_overlap, values);
-    return found;
+    spring_energies const found = at(self, wall, wall.overlap, values);
+    if (!wall.has_saddle()) return found;
+    spring_energies const at_saddle = at(self, wall, wall.saddle_overlap, values);
+    return {found.elastic - at_saddle.elastic, found.tangential - at_saddle.tangential};
   }
 
  private:

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <collide/effects/effect.hpp>
-#include <collide/exact/detail/numeric/random.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 
 namespace collide {
 

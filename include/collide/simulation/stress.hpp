@@ -156,11 +156,14 @@ void for_each_force(simulation<Detector, Effect...> const& of, particles_on_host
 struct field_sums {
   double volume = 0, mass = 0, grains = 0, contacts = 0, momentum[3] = {}, moments[3][3] = {}, flux[3][3] = {};
 
-  void add_grain(double weight, double of_volume, double of_mass, double of_contacts, vec3<double> const& v) {
-    volume += weight * of_volume, mass += weight * of_mass, grains += weight, contacts += weight * of_contacts;
+  void add_grain(double weight, double of_volume, double of_mass, mesh_load const& load, vec3<double> const& v) {
+    volume += weight * of_volume, mass += weight * of_mass, grains += weight, contacts += weight * load.contacts;
     for (int i = 0; i < 3; ++i) {
       momentum[i] += weight * of_mass * v[i];
-      for (int j = 0; j < 3; ++j) flux[i][j] += weight * of_mass * v[i] * v[j];
+      for (int j = 0; j < 3; ++j) {
+        flux[i][j] += weight * of_mass * v[i] * v[j];
+        moments[i][j] += weight * of_mass * load.moment[i][j];
+      }
     }
   }
   void add_force(double weight, vec3<double> const& force, vec3<double> const& branch) {
@@ -243,9 +246,7 @@ struct box_sink {
   void grain(vec3<double> const& x, double volume, double mass, mesh_load const& load, vec3<double> const& v) {
     for (int k = 0; k < 3; ++k)
       if (!(x[k] >= lower[k] && x[k] < upper[k])) return;
-    sums.add_grain(density(), volume, mass, load.contacts, v);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) sums.moments[i][j] += density() * mass * load.moment[i][j];
+    sums.add_grain(density(), volume, mass, load, v);
   }
   void line(vec3<double> const& from, vec3<double> const& branch, vec3<double> const& force) {
     double begin = 0, end = 1;
@@ -293,10 +294,7 @@ struct grid_sink {
   void grain(vec3<double> const& x, double volume, double mass, mesh_load const& load, vec3<double> const& v) {
     near(x, 0, [&](std::size_t cell, vec3<double> const& at) {
       double const weight = kernel((at - x).squaredNorm());
-      if (!(weight > 0)) return;
-      sums[cell].add_grain(weight, volume, mass, load.contacts, v);
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) sums[cell].moments[i][j] += weight * mass * load.moment[i][j];
+      if (weight > 0) sums[cell].add_grain(weight, volume, mass, load, v);
     });
   }
   void line(vec3<double> const& from, vec3<double> const& branch, vec3<double> const& force) {

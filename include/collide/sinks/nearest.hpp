@@ -6,7 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/core/nearest_triangle.hpp>
+#include <collide/core/contact.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/narrow/detail/nearest_search.hpp>

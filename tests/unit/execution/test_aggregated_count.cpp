@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/spaces/detail/aggregated_count.hpp>
+#include <collide/spaces/detail/atomic.hpp>
 
 TEST_CASE("aggregated count: each gets the number before its own, also where it asks a counter twice") {
   constexpr int n = 4;

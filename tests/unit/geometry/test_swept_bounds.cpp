@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 
 TEST_CASE_TEMPLATE("swept bounds: contain the sphere at all times, and lie in it at half time", S, float, double) {
   using collide::vec3;

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/broad/detail/grid/cell_coverage.hpp>
+#include <collide/broad/detail/grid/grid.hpp>
 
 namespace {
 

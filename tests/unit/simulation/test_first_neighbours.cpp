@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/simulation/detail/neighbours/first_neighbours.hpp>
+#include <collide/simulation/detail/neighbours/particle_order.hpp>
 
 TEST_CASE("first neighbours: the smallest, each once and in order, whatever the order in which they come") {
   std::mt19937 random(1);

@@ -17,7 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <collide/broad/detail/grid/cell_coverage.hpp>
+#include <collide/broad/detail/grid/grid.hpp>
 #include <collide/broad/detail/grid/occupancy.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/exact/detail/numeric/rounding.hpp>
@@ -91,7 +91,6 @@ struct mesh_lookup {
   }
 };
 
-/// The lookup of `all_pairs`.
 template <class S>
 struct all_pairs_ref : mesh_lookup<S> {
   COLLIDE_HD all_pairs_ref const& opened() const { return *this; }

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include <collide/broad/detail/mesh_lookup.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/query/detail/candidate_batch.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
 

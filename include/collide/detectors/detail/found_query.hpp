@@ -21,7 +21,6 @@ namespace collide::detail {
 /// An array of pairs in memory of a space, to which more are appended.
 class pair_list {
  public:
-  /// Forgets the pairs.
   void clear() { size_ = 0; }
 
   /// Room for `n` more pairs; returns where.
@@ -62,7 +61,6 @@ struct partial_mesh {
   }
 };
 
-/// A pair with its geometry.
 template <class NarrowPhase, class S>
 COLLIDE_HD hit<NarrowPhase, S> hit_of(pair p, partial_mesh<S> const& mesh,
                                       sphere_view_for<NarrowPhase, S> const& spheres) {
@@ -103,7 +101,6 @@ struct found_query {
   pair const* pairs;
   std::size_t size;
 
-  /// How many hits there are.
   std::uint64_t expected_hits() const { return size; }
 
   template <class Output>

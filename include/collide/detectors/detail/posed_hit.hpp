@@ -74,7 +74,6 @@ class hit<detail::in_frames<NarrowPhase>, S> {
 
 namespace detail {
 
-/// A pair with its geometry.
 template <class NarrowPhase, class S>
 COLLIDE_HD hit<NarrowPhase, S> hit_of(pair p, moving_mesh<S> const& mesh,
                                       sphere_view_for<NarrowPhase, S> const& spheres) {
@@ -228,7 +227,6 @@ struct take_first {
   }
 };
 
-/// True for sinks that search the bodies one after the other.
 template <class Sink>
 inline constexpr bool searches_bodies = std::is_same<Sink, collide::contains>::value;
 template <class S>

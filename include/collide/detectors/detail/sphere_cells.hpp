@@ -80,7 +80,6 @@ struct sphere_size {
   }
 };
 
-/// A level that has spheres.
 struct sphere_level {
   std::uint32_t number;
   double inverse_width;  ///< of its cells
@@ -107,7 +106,6 @@ struct sphere_cells {
     return table{inverse_width, mask}.of(static_cast<double>(x.x()), static_cast<double>(x.y()),
                                          static_cast<double>(x.z()));
   }
-  /// Place of a cell of a level in the table.
   COLLIDE_HD_INLINE std::uint32_t place_of(std::uint32_t level, cell c) const {
     return table{0, mask}.number({c.x, c.y, c.z + static_cast<std::int32_t>(level * 2654435u & 0xfffffeu)});
   }
@@ -198,7 +196,6 @@ struct order_spheres {
   }
 };
 
-/// Spheres in the order of cells, and its memory.
 template <class S>
 class sphere_cell_lists {
   using table = spatial_hash<double>;

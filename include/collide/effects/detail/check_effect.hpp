@@ -85,7 +85,6 @@ COLLIDE_MEMBER_OR(repels, repels, false)
 COLLIDE_MEMBER_OR(needs_solid_mesh, needs_solid_mesh, false)
 COLLIDE_MEMBER_OR(needs_contacts, needs_contacts, false)
 
-/// Says what is wrong with the effects of a simulation.
 template <class Space, class S, class... Effect>
 constexpr bool check_effects() {
   static_assert((check_effect<Effect, Space, S>() && ...));

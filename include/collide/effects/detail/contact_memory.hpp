@@ -186,7 +186,6 @@ class contact_memory {
  public:
   static constexpr int width = contact_values<S, List>::width;
 
-  /// All of it on the host.
   struct on_host {
     std::vector<S> numbers;
     std::size_t items_apart, numbers_apart;
@@ -329,7 +328,6 @@ struct surface_record {
   id body;
 };
 
-/// The memory of contacts with the mesh.
 template <class S, class List>
 struct surface_memory_ref {
   static constexpr int max_contacts = 4;  ///< contacts of a particle that are remembered: the deepest

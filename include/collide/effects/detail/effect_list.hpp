@@ -97,7 +97,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
                                               second_supported_by, third_support, third_supported_by>>;
 
  public:
-  /// All columns of the simulation.
   using all = union_of<named, pair_kicks, clump_kicks, held_columns, support_columns, mesh_kick_columns>;
 
  private:
@@ -176,7 +175,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   static constexpr bool may_be_reordered = false;  ///< see cell_order.hpp
   static constexpr unsigned action_width =
       mutual_effect::action_width > 4 && contains<all, slide_push> ? 13 : mutual_effect::action_width;
-  /// Calls f(effect) for the one, on the host.
   template <class F>
   void for_mutual(F const& f) const {
     f(of<mutual_effect>());
@@ -185,7 +183,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
   static constexpr bool makes = (is_source<E> || ...);
-  /// How many particles a source makes in the time `dt`.
   double due([[maybe_unused]] double dt) const {
     if constexpr (makes) return of<source>().rate * dt;
     return 0;
@@ -232,8 +229,10 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
 
   /// True if any effect says that the particle is inactive.
   template <class P>
-  COLLIDE_HD_INLINE bool is_inactive([[maybe_unused]] P& p) const {
-    return (is_inactive_of<E>(p) || ...);
+  COLLIDE_HD_INLINE bool is_inactive(P& p) const {
+    bool any = false;
+    ask<has_is_inactive>(p, [&](auto const& e, auto const& seen) COLLIDE_HOT { any = any || e.is_inactive(seen); });
+    return any;
   }
 
   /// Makes ready for steps of the time `dt`.
@@ -256,7 +255,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   /// Lets effects accelerate a sphere of a clump that do so for each sphere.
   template <class P>
   COLLIDE_HD_INLINE void push_sphere(P& p, S dt) const {
-    (accelerate_if<E, pushes_spheres<E, S>>(p, dt), ...);
+    (accelerate_by<E, pushes_spheres<E, S>>(p, dt), ...);
   }
   /// Accelerates some particles, each for its own time, on a CPU; those for 0 are left out.
   template <class P, unsigned N>
@@ -285,18 +284,19 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   }
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_contact(P& p, mesh_contact<S>& t, S dt) const {
-    (on_mesh_contact_of<E>(p, t, dt), ...);
-    (after_mesh_contact_of<E>(p, t, dt), ...);
+    ask<has_on_mesh_contact>(p, [&](auto const& e, auto& seen) COLLIDE_HOT { e.on_mesh_contact(seen, t, dt); });
+    ask<has_after_mesh_contact>(p, [&](auto const& e, auto& seen) COLLIDE_HOT { e.after_mesh_contact(seen, t, dt); });
   }
-  /// Tells effects of what the mesh gives to a particle.
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_impulse(P& p, mesh_impulse<S> const& given, S dt) const {
-    (on_mesh_impulse_of<E>(p, given, dt), ...);
+    ask<has_on_mesh_impulse>(p, [&](auto const& e, auto& seen) COLLIDE_HOT { e.on_mesh_impulse(seen, given, dt); });
   }
   /// True if an effect holds a particle that is adhered.
   template <class P>
   COLLIDE_HD_INLINE bool holds(P& p, vec3<S> const& pull, S dt) const {
-    return (holds_of<E>(p, pull, dt) || ...);
+    bool any = false;
+    ask<has_holds>(p, [&](auto const& e, auto const& seen) COLLIDE_HOT { any = any || e.holds(seen, pull, dt); });
+    return any;
   }
   template <class P>
   COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
@@ -320,7 +320,10 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   }
   template <class P>
   COLLIDE_HD_INLINE void try_wake(P& p, P& other) const {
-    (try_wake_of<E>(p, other), ...);
+    ask<has_try_wake>(p, [&](auto const& e, auto& seen) COLLIDE_HOT {
+      std::decay_t<decltype(seen)> const seen_other(other);
+      e.try_wake(seen, seen_other);
+    });
   }
   /// Ends the step of a particle, or, of those that see it as one sphere, of a clump.
   template <bool OfClump = false, class P>
@@ -329,28 +332,23 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   }
 
  private:
-  template <class F, class P>
-  COLLIDE_HD_INLINE bool is_inactive_of([[maybe_unused]] P& p) const {
-    if constexpr (has_is_inactive<F, S>::value) {
-      particle_access<F, P> const seen(p);
-      return of<F>().is_inactive(seen);
-    } else {
-      return false;
+  /// Calls f(effect, the particle as it sees it) for each effect that has a member.
+  template <template <class, class> class Has, class P, class Call>
+  COLLIDE_HD_INLINE void ask(P& p, Call const& f) const {
+    (ask_one<E, Has<E, S>::value>(p, f), ...);
+  }
+  template <class F, bool Does, class P, class Call>
+  COLLIDE_HD_INLINE void ask_one([[maybe_unused]] P& p, [[maybe_unused]] Call const& f) const {
+    if constexpr (Does) {
+      particle_access<F, P> seen(p);
+      f(of<F>(), seen);
     }
   }
-  template <class F, class P>
-  COLLIDE_HD_INLINE void resistance_of([[maybe_unused]] P& p, [[maybe_unused]] media& around) const {
-    if constexpr (has_resistance<F, S>::value) {
-      particle_access<F, P> const seen(p);
-      around.add(of<F>().resistance(seen));
-    }
-  }
-  /// The velocity of the medium around a particle.
   template <class P>
   COLLIDE_HD_INLINE vec3<double> flow_around(P& p) const {
     if constexpr (!flows) return {0, 0, 0};
     media around(p[velocity{}].template cast<double>());
-    (resistance_of<E>(p, around), ...);
+    ask<has_resistance>(p, [&](auto const& e, auto const& seen) COLLIDE_HOT { around.add(e.resistance(seen)); });
     return around.flow();
   }
   template <class F>
@@ -370,48 +368,12 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   COLLIDE_HD_INLINE void accelerate_without_resistance([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;
     if constexpr (keeps_pair_torques) p[angular_velocity{}] += p[pair_angular_acceleration{}] * dt;
-    (accelerate_if<E, !(OfClump && pushes_spheres<E, S>)>(p, dt), ...);
+    (accelerate_by<E, !(OfClump && pushes_spheres<E, S>)>(p, dt), ...);
   }
   template <class F, bool Does, class P>
-  COLLIDE_HD_INLINE void accelerate_if([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (Does && has_accelerate<F, S>::value) {
-      particle_access<F, P> seen(p);
-      of<F>().accelerate(seen, dt);
-    }
-  }
-  template <class F, class P>
-  COLLIDE_HD_INLINE void on_mesh_contact_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
-                                            [[maybe_unused]] S dt) const {
-    if constexpr (has_on_mesh_contact<F, S>::value) {
-      particle_access<F, P> seen(p);
-      of<F>().on_mesh_contact(seen, t, dt);
-    }
-  }
-  template <class F, class P>
-  COLLIDE_HD_INLINE void after_mesh_contact_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
-                                               [[maybe_unused]] S dt) const {
-    if constexpr (has_after_mesh_contact<F, S>::value) {
-      particle_access<F, P> seen(p);
-      of<F>().after_mesh_contact(seen, t, dt);
-    }
-  }
-  template <class F, class P>
-  COLLIDE_HD_INLINE void on_mesh_impulse_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_impulse<S> const& given,
-                                            [[maybe_unused]] S dt) const {
-    if constexpr (has_on_mesh_impulse<F, S>::value) {
-      particle_access<F, P> seen(p);
-      of<F>().on_mesh_impulse(seen, given, dt);
-    }
-  }
-  template <class F, class P>
-  COLLIDE_HD_INLINE bool holds_of([[maybe_unused]] P& p, [[maybe_unused]] vec3<S> const& pull,
-                                  [[maybe_unused]] S dt) const {
-    if constexpr (has_holds<F, S>::value) {
-      particle_access<F, P> const seen(p);
-      return of<F>().holds(seen, pull, dt);
-    } else {
-      return false;
-    }
+  COLLIDE_HD_INLINE void accelerate_by(P& p, S dt) const {
+    ask_one<F, Does && has_accelerate<F, S>::value>(
+        p, [&](auto const& e, auto& seen) COLLIDE_HOT { e.accelerate(seen, dt); });
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void on_pair_contact_of([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
@@ -451,14 +413,6 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       }
     }
     return false;
-  }
-  template <class F, class P>
-  COLLIDE_HD_INLINE void try_wake_of([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {
-    if constexpr (has_try_wake<F, S>::value) {
-      particle_access<F, P> seen(p);
-      particle_access<F, P> const seen_other(other);
-      of<F>().try_wake(seen, seen_other);
-    }
   }
   template <class F, bool OfClump, class P>
   COLLIDE_HD_INLINE void end_step_of([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {

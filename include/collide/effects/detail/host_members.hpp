@@ -92,7 +92,6 @@ double longest_step_of([[maybe_unused]] E const& effect, [[maybe_unused]] smalle
     return std::numeric_limits<double>::infinity();
   }
 }
-/// Throws `error` if a step is longer than an effect allows.
 inline void check_time_step(double dt, double longest, smallest_radii const& radii) {
   if (!(radii.of_all > 0 && dt > longest)) return;
   throw error("collide: simulation: the time dt of a step, " + text_of(dt) +

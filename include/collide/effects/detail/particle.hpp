@@ -48,7 +48,6 @@ using column_element = typename column_layout<C, S>::element;
 template <class C, class S>
 inline constexpr std::size_t column_bytes = sizeof(column_element<C, S>) * std::size_t(column_layout<C, S>::width);
 
-/// The initial value of a column.
 template <class C, class S>
 using initial_member = decltype(C::template initial<S>);
 template <class C, class S>
@@ -69,7 +68,6 @@ struct column_slot {
   column_value<C, S> value;
 };
 
-/// A particle with the columns of a list.
 template <class S, class List>
 struct particle;
 template <class S, class... C>
@@ -94,11 +92,8 @@ struct particle<S, columns<C...>> : column_slot<C, S>... {
 /// The number that effects know a particle by: where it is in memory, or among those of all ranks.
 template <class S, class List>
 COLLIDE_HD_INLINE id number_of(particle<S, List> const& p) {
-  if constexpr (contains<List, global_number>) {
-    return p[global_number{}];
-  } else {
-    return p.name;
-  }
+  if constexpr (contains<List, global_number>) return p[global_number{}];
+  return p.name;
 }
 
 /// Says that a particle has touched something, where it may fall asleep.
@@ -107,7 +102,6 @@ COLLIDE_HD_INLINE void mark_contact([[maybe_unused]] particle<S, List>& p) {
   if constexpr (contains<List, in_contact>) p[in_contact{}] = 1;
 }
 
-/// A particle with the initial values of all columns.
 template <class S, class... C>
 COLLIDE_HD_INLINE void set_initial_values(particle<S, columns<C...>>& p) {
   ((p[C{}] = initial_of<C, S>()), ...);
@@ -183,14 +177,10 @@ struct particle_state<S, columns<C...>>
   }
 
   COLLIDE_HD_INLINE S radius_at(std::size_t i) const {
-    if constexpr (contains<list, radius>) {
-      return at(radius{})[i];
-    } else {
-      return common_radius;
-    }
+    if constexpr (contains<list, radius>) return at(radius{})[i];
+    return common_radius;
   }
 
-  /// One particle.
   template <class... D>
   COLLIDE_HD_INLINE void load(particle<S, columns<D...>>& p, std::size_t i) const {
     p.number = static_cast<id>(i);
@@ -199,7 +189,6 @@ struct particle_state<S, columns<C...>>
     p.the_radius = radius_of(p);
   }
 
-  /// The columns `E` of one particle.
   template <class P, class... E>
   COLLIDE_HD_INLINE void load(P& p, [[maybe_unused]] std::size_t i, columns<E...>) const {
     (load_value(E{}, p[E{}], i), ...);
@@ -260,11 +249,8 @@ struct particle_state<S, columns<C...>>
  private:
   template <class P>
   COLLIDE_HD_INLINE S radius_of(P const& p) const {
-    if constexpr (contains<typename P::list, radius>) {
-      return p[radius{}];
-    } else {
-      return common_radius;
-    }
+    if constexpr (contains<typename P::list, radius>) return p[radius{}];
+    return common_radius;
   }
 
   template <class D>
@@ -322,20 +308,15 @@ struct particle_state<S, columns<C...>>
 /// The number that effects know the particle at a place by.
 template <class S, class List>
 COLLIDE_HD_INLINE id number_of(particle_state<S, List> const& state, std::size_t i) {
-  if constexpr (contains<List, global_number>) {
-    return state.at(global_number{})[i];
-  } else {
-    return state.name_at(i);
-  }
+  if constexpr (contains<List, global_number>) return state.at(global_number{})[i];
+  return state.name_at(i);
 }
 
-/// The memory of a column.
 template <class C, class S>
 struct buffer_of {
   buffer<column_element<C, S>> memory;
 };
 
-/// The memory of all columns.
 template <class S, class List>
 struct column_buffers;
 template <class S, class... C>

@@ -7,7 +7,6 @@
 
 namespace collide::detail {
 
-/// How a medium resists.
 struct medium {
   double linear = 0;     ///< per time
   double quadratic = 0;  ///< per length

@@ -60,7 +60,6 @@ struct read_action {
   S overlap;
 };
 
-/// An action in memory.
 template <class S, unsigned Width>
 struct alignas(Width == 7 ? 8 * sizeof(S) : sizeof(S)) stored_action {
   S numbers[Width];

@@ -82,7 +82,6 @@ class text_lines {
     return true;
   }
 
-  /// The next word of the line, or none.
   std::string_view word() {
     line_.remove_prefix(std::min(line_.find_first_not_of(" \t\r"), line_.size()));
     auto const w = line_.substr(0, line_.find_first_of(" \t\r"));
@@ -110,7 +109,6 @@ class text_lines {
     return value;
   }
 
-  /// The next word of the line as a number.
   template <class T>
   T number() {
     return number<T>(word());
@@ -122,7 +120,6 @@ class text_lines {
     fail(word.empty() ? quoted(keyword) + " is missing" : quoted(word) + " in place of " + quoted(keyword));
   }
 
-  /// Fails unless the next word is this keyword.
   void expect(std::string_view keyword) { expect(keyword, word()); }
 
   /// Fails unless all words of the line have been read.
@@ -131,7 +128,6 @@ class text_lines {
     if (!w.empty()) fail(quoted(w) + " is more than is expected in this line");
   }
 
-  /// The text after the line.
   std::string_view left() const { return left_; }
   /// The number of the line, from 1.
   std::size_t line_number() const { return number_; }

@@ -123,7 +123,6 @@ COLLIDE_HD_NOINLINE inline contact<double> contact_with_fallback(local_triangle<
   return contact_at_point<double>(found, nearest.point, l.scale, centre);
 }
 
-/// The contact of a finite triangle and a sphere at rest.
 COLLIDE_HD_NOINLINE inline contact<double> contact_of_pair(triangle<double> const& t, sphere<double> const& s,
                                                            digits wanted, bool exact_depth) {
   sphere<double> const centre{s.centre, 0};

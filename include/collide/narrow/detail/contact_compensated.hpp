@@ -47,12 +47,10 @@ struct long_projection {
   int number;
   double_double distance;
   vec3<double> normal;  ///< from there to the centre, of any length
-  double
-      sine_squared;  ///< of an angle of the triangle, where the accuracy depends on that, else 1; 0 if this is no foot
-  bool certain;      ///< doubles leave no doubt of which feet there are
+  double sine_squared;  ///< of an angle of the triangle, where the accuracy depends on it, else 1; 0: this is no foot
+  bool certain;         ///< doubles leave no doubt of which feet there are
 };
 
-/// A long triangle rounded to doubles.
 struct rounded_triangle {
   vec3<double> corner[3], edge[3];
   double length_squared[3];  ///< of the edges

@@ -10,7 +10,6 @@
 
 namespace collide::detail {
 
-/// Bounds of the distance of a triangle, computed in doubles.
 struct distance_bounds {
   double low, high;  ///< of the distance
   int foot;          ///< corners 0, 1 and 2, edges 3, 4 and 5, the face 6

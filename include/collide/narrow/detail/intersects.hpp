@@ -11,10 +11,8 @@
 
 namespace collide::detail {
 
-/// The stage that decided a pair.
 enum class stage { box, single_filter, double_filter, exact_integers };
 
-/// A decided pair, and the stage that decided it.
 struct decision {
   bool hit;
   stage decided_by;

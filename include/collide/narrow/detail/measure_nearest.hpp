@@ -10,7 +10,6 @@
 
 namespace collide::detail {
 
-/// A foot on a triangle.
 struct measured_foot {
   double distance;
   double_double weight[3];  ///< of the corners
@@ -46,7 +45,6 @@ COLLIDE_HD inline void set_weights(measured_foot& found, int foot, double_double
   }
 }
 
-/// The foot in exact arithmetic.
 COLLIDE_HD_NOINLINE inline measured_foot measure_foot_exactly(triangle<double> const& t, vec3<double> const& point,
                                                               int foot) {
   exact_slot::memory memory;

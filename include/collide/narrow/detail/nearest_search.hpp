@@ -5,7 +5,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/core/nearest_triangle.hpp>
+#include <collide/core/contact.hpp>
 #include <collide/core/precision.hpp>
 #include <collide/mesh.hpp>
 #include <collide/narrow/detail/contact_in_precision.hpp>
@@ -24,7 +24,6 @@ COLLIDE_HD_INLINE S rounded_up(double x) {
   return above < largest ? static_cast<S>(above) : std::numeric_limits<S>::infinity();
 }
 
-/// The result where there is no triangle.
 template <class S>
 COLLIDE_HD nearest_triangle<S> no_nearest_triangle() {
   constexpr S nan = std::numeric_limits<S>::quiet_NaN();

@@ -80,7 +80,6 @@ struct normal_moments {
   double edges = 0;                       ///< the sum of the products of two edges of each
   vec3<double> lower{0, 0, 0}, upper{0, 0, 0};  ///< their box
 
-  /// The moments of a triangle about its middle.
   COLLIDE_HD static normal_moments of(triangle<double> const& t) {
     normal_moments m;
     vec3<double> const u = t.b - t.a, v = t.c - t.a;

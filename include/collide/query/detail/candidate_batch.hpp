@@ -2,7 +2,7 @@
 /// Candidates that are decided several at a time, in the lanes of the processor's vector unit.
 #pragma once
 
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/narrow/detail/intersects.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
 #include <collide/spaces/detail/multiversion.hpp>

@@ -8,7 +8,7 @@
 
 #include <collide/core/detail/detected.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/narrow/detail/intersects.hpp>
 #include <collide/query/hit.hpp>
 #include <collide/spaces/detail/atomic.hpp>
@@ -121,7 +121,7 @@ inline constexpr bool defers_pairs<output_with_deferral<Output>> = true;
 /// candidate at once. `ItemsPerThread` is how many candidates a thread pushes before there is room for as many again.
 template <class Block, int ItemsPerThread = 1>
 struct pipeline_storage {
-  static constexpr std::uint32_t capacity = Block::hit_capacity;
+  static constexpr std::uint32_t items_per_thread = ItemsPerThread, capacity = Block::hit_capacity;
   static constexpr bool is_cooperative = Block::num_threads > 1;
   static constexpr std::uint32_t candidate_capacity = is_cooperative ? (ItemsPerThread + 1) * Block::num_threads : 1;
 
@@ -144,16 +144,16 @@ struct candidate_pipeline {
   triangle_aabb<S> const* boxes = nullptr;  ///< of candidates that may be out of reach; null if there are no such
 
   /// To be called first, by every thread; what follows may be done when the block has waited.
-  template <class Block, int ItemsPerThread>
-  COLLIDE_HD_INLINE void reset(pipeline_storage<Block, ItemsPerThread>& b, int thread_rank) const {
+  template <class Storage>
+  COLLIDE_HD_INLINE void reset(Storage& b, int thread_rank) const {
     if (thread_rank == 0) b.candidate_count = b.hit_count = 0;
   }
 
-  /// Takes a candidate. Called by any thread; where threads work together, at most `ItemsPerThread` times between two
+  /// Takes a candidate. Called by any thread; where threads work together, at most `items_per_thread` times between two
   /// calls of `drain_if_full`.
-  template <class Block, int ItemsPerThread, class Sphere>
-  COLLIDE_HD_INLINE void push(Block& block, pipeline_storage<Block, ItemsPerThread>& b, pair p, Sphere const& s) const {
-    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
+  template <class Block, class Storage, class Sphere>
+  COLLIDE_HD_INLINE void push(Block& block, Storage& b, pair p, Sphere const& s) const {
+    if constexpr (Storage::is_cooperative) {
       push(block, b, p);
     } else {
       process_one(block, b, p, s);
@@ -161,31 +161,30 @@ struct candidate_pipeline {
   }
 
   /// Takes a candidate whose sphere is not at hand.
-  template <class Block, int ItemsPerThread>
-  COLLIDE_HD_INLINE void push(Block& block, pipeline_storage<Block, ItemsPerThread>& b, pair p) const {
-    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
+  template <class Block, class Storage>
+  COLLIDE_HD_INLINE void push(Block& block, Storage& b, pair p) const {
+    if constexpr (Storage::is_cooperative) {
       b.candidates[block.add(b.candidate_count, 1)] = p;
     } else {
       process_one(block, b, p, spheres[p.sphere]);
     }
   }
 
-  /// Makes room for `ItemsPerThread` more candidates per thread. Called by the whole block.
-  template <class Block, int ItemsPerThread>
-  COLLIDE_HD_INLINE void drain_if_full(Block& block, pipeline_storage<Block, ItemsPerThread>& b) const {
-    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
+  /// Makes room for `items_per_thread` more candidates per thread. Called by the whole block.
+  template <class Block, class Storage>
+  COLLIDE_HD_INLINE void drain_if_full(Block& block, Storage& b) const {
+    if constexpr (Storage::is_cooperative) {
       std::uint32_t const n = block.broadcast(b.candidate_count);
-      if (n + ItemsPerThread * Block::num_threads > pipeline_storage<Block, ItemsPerThread>::candidate_capacity)
-        process(block, b, n);
+      if (n + Storage::items_per_thread * Block::num_threads > Storage::candidate_capacity) process(block, b, n);
     } else {
-      if (b.hit_count == pipeline_storage<Block, ItemsPerThread>::capacity) write_hits(block, b, b.hit_count);
+      if (b.hit_count == Storage::capacity) write_hits(block, b, b.hit_count);
     }
   }
 
   /// Decides and writes everything. Called by the whole block, last.
-  template <class Block, int ItemsPerThread>
-  COLLIDE_HD_INLINE void drain(Block& block, pipeline_storage<Block, ItemsPerThread>& b) const {
-    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
+  template <class Block, class Storage>
+  COLLIDE_HD_INLINE void drain(Block& block, Storage& b) const {
+    if constexpr (Storage::is_cooperative) {
       std::uint32_t const n = block.broadcast(b.candidate_count);
       if (n != 0) process(block, b, n);
     }
@@ -193,38 +192,34 @@ struct candidate_pipeline {
   }
 
   /// Takes a hit of a thread; see `push_hits`.
-  template <class Block, int ItemsPerThread>
-  COLLIDE_HD_INLINE void push_hit(Block& block, pipeline_storage<Block, ItemsPerThread>& b, pair p) const {
-    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
+  template <class Block, class Storage>
+  COLLIDE_HD_INLINE void push_hit(Block& block, Storage& b, pair p) const {
+    if constexpr (Storage::is_cooperative) {
       b.hits[block.add(b.hit_count, 1)] = p;
-    } else if (b.hit_count != pipeline_storage<Block, ItemsPerThread>::capacity) {
+    } else if (b.hit_count != Storage::capacity) {
       b.hits[b.hit_count++] = p;
     } else {
       write_hit(p);
     }
   }
 
-  /// Writes a hit of a thread at once.
   COLLIDE_HD_INLINE void write_hit(pair p) const { write(output.allocate(1), p); }
 
   /// Takes the pairs of those threads that have a hit. Called by the whole block. What decides a pair may call a
   /// function, from which the threads of a warp come back one after another; ptxas 13.0 lets some of them run on past a
   /// barrier that follows if there is an atomic operation in between. So they meet at a barrier before they push.
-  template <class Block, int ItemsPerThread, class Pairs, class Flags>
-  COLLIDE_HD_INLINE void push_hits(Block& block, pipeline_storage<Block, ItemsPerThread>& b, Pairs& pairs,
-                                   Flags& are_hits) const {
+  template <class Block, class Storage, class Pairs, class Flags>
+  COLLIDE_HD_INLINE void push_hits(Block& block, Storage& b, Pairs& pairs, Flags& are_hits) const {
     block.for_each_thread([&](int thread_rank) {
       if (are_hits[thread_rank]) push_hit(block, b, pairs[thread_rank]);
     });
     std::uint32_t const hits = block.broadcast(b.hit_count);
-    if (hits + Block::num_threads > pipeline_storage<Block, ItemsPerThread>::capacity) write_hits(block, b, hits);
+    if (hits + Block::num_threads > Storage::capacity) write_hits(block, b, hits);
   }
 
  private:
-  /// Decides a candidate of a thread that works alone.
-  template <class Block, int ItemsPerThread, class Sphere>
-  COLLIDE_HD_INLINE void process_one(Block& block, pipeline_storage<Block, ItemsPerThread>& b, pair p,
-                                     Sphere const& s) const {
+  template <class Block, class Storage, class Sphere>
+  COLLIDE_HD_INLINE void process_one(Block& block, Storage& b, pair p, Sphere const& s) const {
     if (decide<Block>(p, s)) push_hit(block, b, p);
   }
 
@@ -251,9 +246,8 @@ struct candidate_pipeline {
     }
   }
 
-  /// Decides the `n` candidates that were gathered.
-  template <class Block, int ItemsPerThread>
-  COLLIDE_HD_INLINE void process(Block& block, pipeline_storage<Block, ItemsPerThread>& b, std::uint32_t n) const {
+  template <class Block, class Storage>
+  COLLIDE_HD_INLINE void process(Block& block, Storage& b, std::uint32_t n) const {
     typename Block::template thread_private<pair> own;
     typename Block::template thread_private<bool> hits;
     for (std::uint32_t base = 0; base < n; base += Block::num_threads) {
@@ -269,10 +263,9 @@ struct candidate_pipeline {
     }
   }
 
-  /// Writes the `n` hits that were gathered.
-  template <class Block, int ItemsPerThread>
-  COLLIDE_HD_INLINE void write_hits(Block& block, pipeline_storage<Block, ItemsPerThread>& b, std::uint32_t n) const {
-    if constexpr (pipeline_storage<Block, ItemsPerThread>::capacity > 0) {
+  template <class Block, class Storage>
+  COLLIDE_HD_INLINE void write_hits(Block& block, Storage& b, std::uint32_t n) const {
+    if constexpr (Storage::capacity > 0) {
       if (n == 0) return;
       block.for_each_thread([&](int thread_rank) {
         if (thread_rank != 0) return;

@@ -32,7 +32,6 @@ struct subdomain {
 struct subdomain_lookup {
   subdomain const* subdomains;
 
-  /// The rank in whose subdomain a point is.
   template <class S>
   COLLIDE_HD int rank_at(S const* x) const {
     std::size_t i = 0;
@@ -141,7 +140,6 @@ class bisection {
     double edge(std::size_t bin) const { return lower + 2 * (half * (static_cast<double>(bin) / bins)); }
   };
 
-  /// Finds where the nodes of a level are cut.
   template <class Ranks, class S>
   void cut(Ranks const& ranks, std::vector<std::size_t> const& level, std::vector<std::uint32_t> const& at,
            std::vector<S> const& centres) {

@@ -95,13 +95,11 @@ class device_exchange_buffer {
   void from_host(Space const& space) {
     if constexpr (!Space::host_accessible) space.copy_from_host(data(), on_host_.data(), size_);
   }
-  /// Makes room for them on the host.
   template <class Space>
   void ensure_host_capacity(Space const& space) {
     if constexpr (!Space::host_accessible) on_host_.resize(space, size_);
     host_ = Space::host_accessible ? data() : on_host_.data();
   }
-  /// The items on the host, once there is room.
   T* on_host() const { return host_; }
 
  private:
@@ -190,11 +188,8 @@ class device_exchange {
   static constexpr bool can_be_direct = is_valid<ranks_exchange_in_space, Ranks, Space>;
 
   bool is_direct() const {
-    if constexpr (can_be_direct && is_valid<ranks_takes_device_memory, Ranks>) {
-      return ranks_.takes_device_memory();
-    } else {
-      return can_be_direct;
-    }
+    if constexpr (can_be_direct && is_valid<ranks_takes_device_memory, Ranks>) return ranks_.takes_device_memory();
+    return can_be_direct;
   }
 
   Ranks const& ranks_;

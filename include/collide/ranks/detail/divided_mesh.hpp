@@ -16,7 +16,6 @@
 
 namespace collide::detail {
 
-/// The part of a rank.
 template <class S>
 class divided_mesh {
  public:
@@ -62,7 +61,6 @@ class divided_mesh {
   /// The map for kernels of the space that the mesh was built in.
   rank_lookup const& lookup() const { return lookup_; }
 
-  /// Triangle `i` of this rank.
   numbered_triangle<S> operator[](std::size_t i) const {
     numbered_triangle<S> t{};
     t.number = numbers_[i];

@@ -184,12 +184,10 @@ class part_of_simulation {
     }
   }
 
-  /// The rest of a step.
   void end_step(S dt) {
     meet(dt);
     if (own() != 0) phases().end_step(dt);
   }
-  /// Particles meet.
   void meet(S dt) { phases().meet(with_copies(), dt); }
   /// True if particles of a source may not be born, which others must know before particles meet.
   bool refuses_births(S dt) const {
@@ -284,7 +282,6 @@ class part_of_simulation {
     return found;
   }
 
-  /// Takes the rows of particles that leave.
   void pack_all(send_plan const& leaving, device_exchange_buffer<particle_row<S, all_columns>>& to) {
     to.counts = leaving.counts();
     detail::pack_particles(space(), state(), routed_places{leaving.data()}, leaving.size(), to.resize(space()));
@@ -419,7 +416,6 @@ class part_of_simulation {
     move(from, to);
   }
 
-  /// Moves particles from places to others.
   void move(std::vector<std::uint32_t> const& from, std::vector<std::uint32_t> const& to) {
     buffer<particle_row<S, all_columns>> moved;
     auto* const between = moved.reserve(space().resource(), from.size());

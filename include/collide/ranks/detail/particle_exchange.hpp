@@ -79,7 +79,6 @@ class particle_exchange {
   using space_type = typename Part::space_type;
 
  public:
-  /// Forgets the subdomains: there are other particles.
   void clear() { is_divided_ = false; }
 
   /// Brings particles to the ranks in whose subdomains they are, and finds out which copies go where.
@@ -123,7 +122,6 @@ class particle_exchange {
   bool is_under_way(Ranks const& ranks, Part& part) const {
     return by(ranks, part).is_under_way();
   }
-  /// Waits until it is there.
   template <class Ranks>
   void receive(Ranks const& ranks, Part& part) const {
     by(ranks, part).end();
@@ -132,7 +130,6 @@ class particle_exchange {
   /// If something has gone wrong: what the part does from now on comes after what is sent.
   void abandon(Part& part) const { side_.end(part.space()); }
 
-  /// Takes over what the others have sent.
   template <class Ranks>
   void unpack(Ranks const& ranks, Part& part) {
     by(ranks, part).unstage(received_);

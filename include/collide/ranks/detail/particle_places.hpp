@@ -124,11 +124,8 @@ struct find_moved {
 /// True if there is a particle at a place.
 template <class State>
 COLLIDE_HD_INLINE bool is_there([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
-  if constexpr (contains<typename State::list, alive>) {
-    return state.at(alive{})[i] != 0;
-  } else {
-    return true;
-  }
+  if constexpr (contains<typename State::list, alive>) return state.at(alive{})[i] != 0;
+  return true;
 }
 /// True if there is a particle, at a point that is finite.
 template <class State>

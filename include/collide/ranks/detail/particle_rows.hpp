@@ -19,7 +19,6 @@
 
 namespace collide::detail {
 
-/// The columns of a list, of one particle.
 template <class S, class List>
 struct particle_row;
 template <class S, class... C>
@@ -28,12 +27,10 @@ struct particle_row<S, columns<C...>> {
   unsigned char bytes[size];
 };
 
-/// Places of particles that are listed.
 struct listed_places {
   std::uint32_t const* list;
   COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return list[i]; }
 };
-/// Places that follow each other.
 struct places_from {
   std::size_t first;
   COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return first + i; }
@@ -78,12 +75,10 @@ struct unpack_rows<State, Places, particle_row<S, columns<C...>>> {
   }
 };
 
-/// Copies the particles at some places to rows, all in memory of the space.
 template <class Space, class State, class Places, class Row>
 void pack_particles(Space const& space, State const& state, Places const& places, std::size_t n, Row* rows) {
   space.for_each(n, pack_rows<State, Places, Row>{state, places, rows});
 }
-/// Copies rows to some places, all in memory of the space.
 template <class Space, class State, class Places, class Row>
 void unpack_particles(Space const& space, State const& state, Places const& places, std::size_t n, Row const* rows) {
   space.for_each(n, unpack_rows<State, Places, Row>{state, places, rows});
@@ -158,7 +153,6 @@ saved_contacts<S> contacts_of(std::vector<contact_row<S, Width>> const& rows, st
   return saved;
 }
 
-/// The numbers from 0 to n - 1.
 inline std::vector<id> first_ids(std::size_t n) {
   std::vector<id> numbers(n);
   for (std::size_t i = 0; i < n; ++i) numbers[i] = static_cast<id>(i);

@@ -105,7 +105,6 @@ class coarse_grid {
   }
   static constexpr std::size_t places = std::size_t{1} << (3 * finest);
 
-  /// Number of a cell of a level.
   static std::size_t cell_at(int level, int x, int y, int z) { return first_of(level) + place_of(x, y, z); }
 
   /// Number of the cell that contains a cell, which is not the first of all.

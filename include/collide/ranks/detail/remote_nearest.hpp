@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <collide/core/nearest_triangle.hpp>
+#include <collide/core/contact.hpp>
 #include <collide/ranks/detail/remote_pairs.hpp>
 #include <collide/sinks/detail/search_mesh.hpp>
 

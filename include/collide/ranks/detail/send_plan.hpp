@@ -10,6 +10,7 @@
 #include <collide/core/contact.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
 #include <collide/sinks/detail/output.hpp>
+#include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/host_array.hpp>
 
 namespace collide::detail {
@@ -43,16 +44,7 @@ struct find_bounds {
   std::uint64_t const* spheres;
   std::uint64_t* bounds;
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::size_t low = 0, high = size;
-    while (low < high) {
-      std::size_t const middle = (low + high) / 2;
-      if (pairs[middle].sphere < spheres[i]) {
-        low = middle + 1;
-      } else {
-        high = middle;
-      }
-    }
-    bounds[i] = low;
+    bounds[i] = first_not_before(std::size_t{0}, size, [&](std::size_t k) { return pairs[k].sphere < spheres[i]; });
   }
 };
 
@@ -95,9 +87,7 @@ class send_plan {
 
   std::size_t size() const { return list_.size(); }
   pair const* data() const { return list_.data(); }
-  /// How many items go to a rank.
   std::uint64_t count(std::size_t rank) const { return ends_[rank + 1] - ends_[rank]; }
-  /// How many items go to each rank.
   std::vector<std::uint64_t> counts() const {
     std::vector<std::uint64_t> all;
     for (std::size_t r = 0; r + 1 < ends_.size(); ++r) all.push_back(count(r));

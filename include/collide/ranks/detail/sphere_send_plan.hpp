@@ -135,7 +135,6 @@ struct find_sends {
   }
 };
 
-/// Routes of a rank's spheres.
 class sphere_send_plan : public send_plan {
  public:
   /// Finds the routes of spheres to ranks other than `self`.

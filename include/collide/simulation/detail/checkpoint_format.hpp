@@ -50,7 +50,6 @@ class checkpoint_writer {
     put(checkpoint_byte_order);
   }
 
-  /// A block of plain values.
   template <class T>
   void block(std::string const& name, T const* elements, std::size_t n) {
     block(name, elements, n, sizeof(T));
@@ -135,7 +134,6 @@ class checkpoint_reader {
     if (there != content) refuse(name, "the file has " + there + ", the simulation " + content);
   }
 
-  /// Compares the checksum.
   void finish() {
     std::uint64_t const sum = checksum_.sum();
     if (get<std::uint64_t>("checksum") != sum) refuse("checksum", "the file is damaged");
@@ -152,7 +150,6 @@ class checkpoint_reader {
       refuse(name, "the file has " + std::to_string(found) + " numbers, expected are " + std::to_string(n));
   }
 
-  /// Reads how many elements the block has.
   std::uint64_t head(std::string const& name, std::size_t element) {
     std::string found(name.size(), ' ');
     bool const as_long = get<std::uint32_t>(name) == name.size();

@@ -63,7 +63,6 @@ class dropped_spheres {
         std::find_if(column.rbegin(), column.rend(), [&](ball const& b) { return b.centre.z() <= at.z(); });
     column.insert(above.base(), {at, radius});
   }
-  /// The number of columns of cells, and the place of one.
   std::size_t columns() const { return columns_.size(); }
   double column_side(std::size_t column, int k, double fraction) const {
     std::size_t const n = std::size_t(count_[0]), number = k == 0 ? column % n : column / n;

@@ -7,20 +7,17 @@
 #include <string>
 #include <vector>
 
-#include <collide/simulation/detail/step/lookup_space.hpp>
 #include <collide/simulation/detail/step_phases.hpp>
+#include <collide/spaces/detail/tuning.hpp>
 
 namespace collide::detail {
 
-/// Particles as spheres.
 template <class S, class Columns>
 sphere_view<S> spheres_of(particle_state<S, Columns> const& particles) {
   S const* const xyz = particles.at(position{});
-  if constexpr (contains<Columns, radius>) {
+  if constexpr (contains<Columns, radius>)
     return spheres_xyz(xyz, particles.size, static_cast<S const*>(particles.at(radius{})));
-  } else {
-    return spheres_xyz(xyz, particles.size, particles.common_radius);
-  }
+  return spheres_xyz(xyz, particles.size, particles.common_radius);
 }
 
 /// Nothing goes on in silence without what contacts should remember.

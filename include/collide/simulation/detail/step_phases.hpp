@@ -72,7 +72,6 @@ class step_phases {
           "not know clumps");
   }
 
-  /// The part of a step before particles meet.
   void begin_step(S dt) {
     (begin_step_of<Effect>(dt), ...);
     if constexpr (effects_type::makes && effects_type::remembers_surfaces) {
@@ -128,7 +127,6 @@ class step_phases {
       for_each(take_marks_off{s_.particles.at(alive{})});
   }
 
-  /// The part of a step after particles have met.
   void end_step(S dt) {
     if constexpr (effects_type::has_clumps)
       for_each(step_clumps<S, effects_type, true>{s_.particles, s_.effects, s_.effects.space(), dt});
@@ -199,7 +197,6 @@ class step_phases {
   }
 
  private:
-  /// Runs a kernel functor over all particles.
   template <class Kernel>
   void for_each(Kernel const& kernel) {
     s_.space.for_each(s_.particles.size, kernel);
@@ -334,7 +331,6 @@ class step_phases {
     return false;
   }
 
-  /// After lists of neighbours may have been made anew.
   void follow_lists() {
     if (!s_.neighbours.are_new()) return;
     s_.is_pressing_known = false;
@@ -349,7 +345,7 @@ class step_phases {
     (s_.space.fill(s_.particles.at(Kick{}), 0, 3 * s_.particles.size * sizeof(S)), ...);
   }
 
-  /// Moves particles, and resolves their contacts with the mesh. A CPU reads memory ahead, and so always goes forwards.
+  /// A CPU reads memory ahead, and so always goes forwards.
   void move(S dt) {
     if (s_.particles.size == 0) return;
     auto const triangles = mesh_ref<effects_type::any_mesh_contact>(s_, dt);

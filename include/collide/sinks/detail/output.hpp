@@ -109,7 +109,6 @@ struct output {
 /// Flags are complete as they are.
 inline bool wants_end_pass(output const& o) { return o.count.sum != nullptr; }
 
-/// The memory of a hit counter.
 class hit_counter_buffer {
  public:
   /// For a pass that is put on the space's stream next.
@@ -210,7 +209,6 @@ class pair_collector {
 
   pair* data() const { return data_; }
   std::size_t size() const { return size_; }
-  /// For how many pairs its own array has room.
   std::size_t capacity() const { return own_.capacity(); }
   std::uint64_t total() const { return total_; }
 

@@ -9,13 +9,13 @@
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/mesh.hpp>
 #include <collide/query/concepts.hpp>
+#include <collide/spaces/detail/algorithms.hpp>
 
 namespace collide::detail {
 
 template <class Query, class F>
 using query_search = decltype(std::declval<Query const&>().search(std::declval<F const&>()));
 
-/// A sink that searches one of the parts of a mesh.
 template <class F>
 struct search_part {
   F f;
@@ -67,12 +67,8 @@ struct mesh_subset {
 
   /// The last place whose triangle has a number up to `t`, if the numbers rise; 0 if there is none.
   COLLIDE_HD id find(id t) const {
-    std::size_t low = 0, high = triangles.size();
-    while (high - low > 1) {
-      std::size_t const middle = (low + high) / 2;
-      (number_of[static_cast<id>(middle)] <= t ? low : high) = middle;
-    }
-    return static_cast<id>(low);
+    auto const is_before = [&](std::size_t k) { return number_of[static_cast<id>(k)] <= t; };
+    return static_cast<id>(first_not_before(std::size_t{1}, triangles.size(), is_before) - 1);
   }
   COLLIDE_HD bool has_at(id place, id t) const { return place < triangles.size() && number_of[place] == t; }
 };
@@ -86,7 +82,6 @@ struct renumber_pairs {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = {sphere[from[i].sphere], triangle[from[i].triangle]}; }
 };
 
-/// A triangle with its number in the whole mesh.
 template <class S>
 struct numbered_triangle {
   id number;

@@ -16,7 +16,6 @@
 
 namespace collide::detail {
 
-/// Temporary memory of `sort_pairs`.
 struct sort_memory {
   buffer<pair> pairs;
   buffer<unsigned char> bytes;

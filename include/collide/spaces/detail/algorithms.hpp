@@ -1,5 +1,5 @@
 /// \file
-/// Algorithms made of the members of a space.
+/// Algorithms made of the members of a space, and a search and a sort within a thread.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,46 @@
 #include <collide/spaces/detail/block.hpp>
 
 namespace collide::detail {
+
+/// The first number from `low` to before `high` of which is_before is false, as of all behind it; else `high`.
+template <class I, class F>
+COLLIDE_HD_INLINE I first_not_before(I low, I high, F const& is_before) {
+  COLLIDE_NO_UNROLL
+  while (low < high) {
+    I const middle = low + (high - low) / 2;
+    if (is_before(middle)) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+/// A heap sort: nothing that calls itself, and no memory.
+template <class T, class Less>
+COLLIDE_HD void heap_sort(T* values, std::uint32_t n, Less const& comes_before) {
+  auto const swap = [&](std::uint32_t i, std::uint32_t k) {
+    T const value = values[i];
+    values[i] = values[k];
+    values[k] = value;
+  };
+  auto const sift = [&](std::uint32_t root, std::uint32_t end) {
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t child; (child = 2 * root + 1) < end; root = child) {
+      if (child + 1 < end && comes_before(values[child], values[child + 1])) ++child;
+      if (!comes_before(values[root], values[child])) return;
+      swap(root, child);
+    }
+  };
+  COLLIDE_NO_UNROLL
+  for (std::uint32_t root = n / 2; root-- > 0;) sift(root, n);
+  COLLIDE_NO_UNROLL
+  for (std::uint32_t end = n; end > 1;) {
+    swap(0, --end);
+    sift(0, end);
+  }
+}
 
 /// Kernel functor of `for_each` over values.
 template <class T>

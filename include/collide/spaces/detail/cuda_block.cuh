@@ -17,7 +17,6 @@ namespace collide::detail {
 inline constexpr int threads_per_block = 256;  ///< threads of a block, in every kernel
 inline constexpr int cuda_warp = 32;           ///< threads that run together
 
-/// A block of CUDA threads that share memory.
 template <int Items>
 class cuda_block {
  public:

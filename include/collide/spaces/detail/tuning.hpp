@@ -46,7 +46,6 @@ struct default_bucket_tuning<false> : device_bucket_tuning {};
 template <class Space>
 struct bucket_tuning : detail::default_bucket_tuning<Space::host_accessible> {};
 
-/// How `bvh` makes its tree in a space.
 template <class Space>
 struct bvh_tuning {
   /// True if triangles are divided by the areas of boxes, which takes longer and finds faster than to sort them, and is
@@ -108,5 +107,32 @@ struct broad_phase_costs {
                                                       ? broad_phase_cost_model{80, 0.137, 4, 30, 5000, 13, 64}
                                                       : broad_phase_cost_model{0, 1.9, 0.012, 0.1, 30000};
 };
+
+namespace detail {
+
+/// A space as a broad phase sees it that is asked for the triangles near single spheres: they are sorted, not the
+/// spheres, and into narrow cells, as a look-up is cheap and a candidate is not.
+template <class Space>
+struct lookup_space : Space {};
+
+template <class Space>
+inline constexpr bool serves_steps<lookup_space<Space>> = true;
+
+}  // namespace detail
+
+template <class Space>
+struct bucket_tuning<detail::lookup_space<Space>> : bucket_tuning<Space> {
+  static constexpr bool bins_spheres = false;
+  /// The grid serves many steps. On a device narrower cells gain nothing: their bits take more memory.
+  static constexpr bucket_costs costs = [] {
+    bucket_costs c = bucket_tuning<Space>::costs;
+    if (Space::host_accessible) c.entry_ns /= 16;
+    c.thin_ns = c.thin_entry_ns = c.waiting = 0;
+    return c;
+  }();
+};
+
+template <class Space>
+struct bvh_tuning<detail::lookup_space<Space>> : bvh_tuning<Space> {};
 
 }  // namespace collide

@@ -26,7 +26,6 @@ struct mesh_measures {
   buffer<triangle_aabb<S>> box_memory;
   bool has_boxes = false;  ///< of this mesh
 
-  /// The boxes of the triangles; null if there are none.
   triangle_aabb<S> const* boxes() const { return has_boxes ? box_memory.data() : nullptr; }
 
   /// The statistics of no triangles.
@@ -63,7 +62,6 @@ struct measured_radii {
   grid_reaches<S> reaches;
 };
 
-/// The grids that an index has.
 template <class S>
 struct grid_set {
   buffer<grid<S>> memory;
@@ -300,7 +298,6 @@ class cell_index {
     grids_.memory.reserve(space.resource(), max_grids);
   }
 
-  /// Chooses the cells of the grids.
   template <class Space, class Spheres>
   void plan_cells(Space& space, wanted_grids<S> const& wanted, grid_reaches<S> const* reaches, Spheres const& spheres,
                   float sphere_count, [[maybe_unused]] mesh_view<S> const* mesh) {

@@ -63,7 +63,6 @@ struct measure_groups {
     aabb<S> all;
   };
 
-  /// How many blocks there are.
   std::size_t blocks() const { return (mesh.size() + share - 1) / share; }
 
   template <class Block>
@@ -158,7 +157,6 @@ struct measure_radii {
   sphere_view<S> spheres;
   size_histogram* histogram;
 
-  /// How many blocks there are.
   std::size_t blocks() const { return (spheres.size() + share - 1) / share; }
 
   template <class>

@@ -23,8 +23,8 @@
 #include <collide/broad/detail/grid/triangle_cells.hpp>
 #include <collide/core/memory.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/exact/detail/geometry/sphere_pack.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
 #include <collide/narrow/detail/traits.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/atomic.hpp>
@@ -167,7 +167,6 @@ class sorted_spheres {
     space.launch(kernel.blocks(), kernel);
   }
 
-  /// The groups of the triangles.
   grouped_mesh<S> const& mesh() const { return mesh_; }
 
   /// Marks the cells that triangles of the mesh measured last touch. To be called for new grids, the cells of each of

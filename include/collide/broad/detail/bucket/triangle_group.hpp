@@ -24,7 +24,6 @@ struct triangle_group {
   triangle_aabb<S> all;
   std::uint32_t there;  ///< bit i: there is a triangle i, and it is finite, and none that another one repeats
 
-  /// How many groups the triangles of a mesh are.
   static std::size_t count(std::size_t triangles) { return (triangles + size - 1) / size; }
 
   /// Takes triangles `first` and the next ones of a mesh, as many as there are. The boxes of what is not finite, or not
@@ -61,15 +60,12 @@ struct triangle_group {
     all.padding = reduced(padding, [](S a, S b) { return max(a, b); });
   }
 
-  /// True if there is a triangle `i`, and it is finite.
   bool has(std::uint32_t i) const { return (there >> i & 1) != 0; }
 
-  /// The box of triangle `i`.
   triangle_aabb<S> box(std::uint32_t i) const {
     return {{{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}}, padding[i]};
   }
 
-  /// Triangle `i`.
   triangle<S> operator[](std::uint32_t i) const {
     auto const corner = [&](int c) { return vec3<S>{corners[c][0][i], corners[c][1][i], corners[c][2][i]}; };
     return {corner(0), corner(1), corner(2)};

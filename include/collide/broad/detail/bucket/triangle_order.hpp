@@ -15,7 +15,6 @@
 
 namespace collide::detail {
 
-/// A triangle, and where it is on a curve through space.
 struct triangle_on_curve {
   std::uint32_t place;
   id number;
@@ -153,10 +152,8 @@ struct grouped_mesh {
   mesh_view<S> mesh;  ///< eight triangles for each group; what a group has not, it repeats
   id const* numbers;  ///< that the triangles have for the caller, `no_id` of repeated ones; null if all have their own
 
-  /// How many groups there are.
   std::size_t size() const { return triangle_group<S>::count(mesh.size()); }
 
-  /// Reads group `i`.
   void load(triangle_group<S>& group, std::size_t i) const {
     constexpr std::size_t n = triangle_group<S>::size;
     group.load(mesh, i * n);

@@ -13,7 +13,6 @@
 #include <collide/core/memory.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/mesh.hpp>
-#include <collide/spaces/detail/aggregated_count.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 #include <collide/spaces/detail/block.hpp>
 
@@ -123,7 +122,6 @@ struct enter_triangles {
     s.slabs[slot] = cells.slabs();
   }
 
-  /// Enters a triangle into all cells that its box meets.
   COLLIDE_HD_INLINE void enter_box(triangle_cells<S> const& cells, id triangle) const {
     cell_box const& r = cells.range();
     std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,

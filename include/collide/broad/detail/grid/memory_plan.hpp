@@ -33,7 +33,6 @@ inline void check_triangles(std::size_t triangles, std::size_t limit) {
               ", the most of one build: build fewer at a time, with in_passes or on more ranks");
 }
 
-/// The grids that are made.
 struct memory_plan {
   int grids = 0;
   std::uint32_t table_bits = 0;  ///< log2 of the number of cells per grid

@@ -150,7 +150,6 @@ struct radius_histogram_kernel {
   }
 };
 
-/// How far the grids of an index reach.
 template <class S>
 struct grid_reaches {
   S reaches[max_grids];  ///< falling; -1 behind the last

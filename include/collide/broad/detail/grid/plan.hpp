@@ -31,7 +31,6 @@ struct triangle_sums {
     return 2 * d * (area / (width * width)) + 1.5708f * d * d * (perimeter / width) + 4.1888f * d * d * d * count;
   }
 
-  /// The mean extent of their boxes.
   COLLIDE_HD_INLINE float mean_extent() const { return count > 0 ? perimeter / (perimeter_of_extent * count) : 0.f; }
 
   /// The largest of them alone.
@@ -86,7 +85,6 @@ struct level_cost {
   }
 };
 
-/// A request for grids.
 template <class S>
 struct grid_request {
   S reach;                        ///< of the only grid,

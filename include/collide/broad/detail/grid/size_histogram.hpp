@@ -31,7 +31,6 @@ struct size_histogram {
   std::uint32_t counts[size_bins];
   std::uint64_t sums[size_bins];
 
-  /// Empties a histogram in memory of the space.
   template <class Space>
   static void clear(Space& space, size_histogram* h) {
     space.fill(h, 0, sizeof *h);

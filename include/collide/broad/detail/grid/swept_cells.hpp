@@ -14,7 +14,6 @@ namespace collide::detail {
 template <class S>
 class swept_cells {
  public:
-  /// No path at all.
   swept_cells() = default;
 
   /// For a sphere that `is_traversable` in the grid, or whose path is short.

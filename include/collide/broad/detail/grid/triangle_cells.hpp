@@ -133,7 +133,6 @@ class triangle_cells {
     return x <= 3 && y <= 3 && z <= 3 && x * y * z <= 18;
   }
 
-  /// How many slabs there are.
   COLLIDE_HD_INLINE std::uint32_t slabs() const {
     int const u = slab_axis();
     return range_.upper[u] - range_.lower[u] + 1;

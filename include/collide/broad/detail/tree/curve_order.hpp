@@ -53,7 +53,6 @@ COLLIDE_HD_INLINE std::uint64_t place_of_fractions(vec3<S> const& fractions) {
   return place_on_curve<Bits>(x);
 }
 
-/// Half of the largest width of a mesh.
 template <class S>
 COLLIDE_HD_INLINE S half_extent(mesh_statistics<S> const& mesh) {
   S half = 0;
@@ -131,7 +130,6 @@ class curve_sort {
   buffer<unsigned char> scratch_;
 };
 
-/// Sorts triangles along the curve.
 template <class S>
 class curve_order {
  public:
@@ -148,11 +146,9 @@ class curve_order {
     sort_.sort(space, 3 * find_places<S>::bits + 1);
   }
 
-  /// The ids of the triangles in order.
   id const* ids() const { return sort_.ids_in_order(); }
   /// The places of the triangles on the curve, which rise.
   std::uint64_t const* places() const { return sort_.places_in_order(); }
-  /// The statistics of the mesh, in memory of the space.
   mesh_statistics<S> const* summary() const { return summary_.data(); }
 
  private:

@@ -95,7 +95,6 @@ struct curve_splits {
     return {furthest(i, i, false, between), furthest(i + 1, count - 2 - i, true, between)};
   }
 
-  /// The split of a range of two groups or more.
   COLLIDE_HD id split_of(curve_range const& r) const {
     return furthest(r.first, r.last - r.first, true, groups.common(r.first, r.last));
   }
@@ -266,7 +265,6 @@ struct fit_boxes {
   }
 };
 
-/// Makes the tree.
 template <class S>
 class radix_tree {
  public:
@@ -302,7 +300,6 @@ class radix_tree {
     space.for_each(mesh.size(), fit_boxes<S>{mesh, order_.ids(), slots_.data(), memory.data()});
   }
 
-  /// Statistics of the mesh, in memory of the space.
   mesh_statistics<S> const* summary() const { return order_.summary(); }
 
  private:

@@ -66,7 +66,6 @@ class range_divider {
  public:
   explicit range_divider(boxed_triangle* triangles) : all_{triangles} {}
 
-  /// A part of the triangles.
   triangle_range range_of(std::uint32_t begin, std::uint32_t end) const {
     triangle_range r{begin, end, box_ends::empty(), box_ends::empty()};
     multiversioned([&] {
@@ -183,7 +182,6 @@ class range_divider {
   boxed_triangle* all_;
 };
 
-/// Makes the tree.
 template <class S>
 class sah_tree {
  public:
@@ -240,7 +238,6 @@ class sah_tree {
  private:
   static constexpr int width = tree_node::width, max_tasks = 1024, max_imbalance = 40;  // levels
 
-  /// A node to be made.
   struct task {
     triangle_range range;
     std::uint32_t node;

@@ -35,11 +35,8 @@ COLLIDE_HD_INLINE float float_above(S x) {
 /// The point that the boxes of a tree are relative to: nothing for floats, a corner of the mesh for doubles.
 template <class S>
 COLLIDE_HD_INLINE vec3<S> tree_origin(mesh_view<S> const& mesh) {
-  if constexpr (sizeof(S) == sizeof(float)) {
-    return {0, 0, 0};
-  } else {
-    return lifted_origin(mesh);
-  }
+  if constexpr (sizeof(S) == sizeof(float)) return {0, 0, 0};
+  return lifted_origin(mesh);
 }
 
 /// The box of a triangle in a tree: with room for the rounding of the coarsest narrow phase, as far as it goes with the
@@ -149,7 +146,6 @@ struct tree_node : tree_boxes {
     child[k] = what;
   }
 
-  /// The box around all of its boxes.
   COLLIDE_HD_INLINE aabb<float> box() const {
     aabb<float> all = aabb<float>::empty();
     for (int i = 0; i < 3; ++i) {

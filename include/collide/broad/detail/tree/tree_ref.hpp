@@ -19,7 +19,6 @@ inline constexpr int max_tree_levels = 32;
 inline constexpr int max_tree_levels = 64;
 #endif
 
-/// The number of the lowest bit that is set.
 COLLIDE_HD_INLINE int lowest_bit(std::uint32_t mask) {
 #if defined(__CUDA_ARCH__)
   return __ffs(static_cast<int>(mask)) - 1;

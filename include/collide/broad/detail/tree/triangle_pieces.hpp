@@ -12,9 +12,9 @@
 #include <collide/broad/detail/grid/grid.hpp>
 #include <collide/broad/detail/tree/tree_node.hpp>
 #include <collide/core/memory.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/exact/detail/geometry/closest_point.hpp>
 #include <collide/exact/detail/geometry/local_triangle.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
 
@@ -66,7 +66,6 @@ struct triangle_shape {
   }
 };
 
-/// The box of a triangle in doubles.
 template <class S>
 aabb<double> wide_box_of(triangle<S> const& t) {
   aabb<S> const b = triangle_aabb_of(t);
@@ -100,7 +99,6 @@ inline std::size_t extra_pieces(std::size_t triangles, int wanted) {
   return min(max(3 * triangles, std::size_t{1} << 18), static_cast<std::size_t>(wanted - 1) * triangles);
 }
 
-/// Cuts the triangles of a mesh for which that pays.
 template <class S>
 class triangle_pieces {
  public:
@@ -348,7 +346,6 @@ class sampled_triangles {
   }
 
  private:
-  /// Calls f with up to `max_spheres` of the spheres.
   template <class Spheres, class F>
   static void each_sample(Spheres const& spheres, std::size_t max_spheres, F const& f) {
     std::size_t const n = min(spheres.size(), max_spheres);

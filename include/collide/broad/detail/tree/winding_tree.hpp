@@ -132,7 +132,6 @@ struct winding_tree_ref {
   }
 };
 
-/// Makes the tree.
 template <class S>
 class winding_tree {
  public:

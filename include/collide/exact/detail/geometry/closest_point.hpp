@@ -32,7 +32,6 @@ struct separation {
   double distance, depth;
 };
 
-/// A contact without its point.
 struct contact_without_point {
   separation measured;
   vec3<double> normal;

@@ -38,7 +38,6 @@ COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
   return m.z() >= max(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
 }
 
-/// The longest edge of a triangle.
 template <class T>
 COLLIDE_HD_INLINE vec3<T> longest_edge(local_triangle<T> const& t) {
   vec3<T> const ab = t.b - t.a, bc = t.c - t.b, ca = t.a - t.c;

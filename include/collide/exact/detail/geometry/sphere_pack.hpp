@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include <collide/core/moving_spheres.hpp>
-#include <collide/exact/detail/geometry/swept_bounds.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
 
 namespace collide::detail {
 

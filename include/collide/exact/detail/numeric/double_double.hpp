@@ -87,7 +87,6 @@ COLLIDE_HD_INLINE double_double scaled(double_double const& x, double power) {
 struct long_vector {
   double_double x, y, z;
 
-  /// Rounded to doubles.
   COLLIDE_HD_INLINE vec3<double> rounded() const { return {x.high, y.high, z.high}; }
 };
 

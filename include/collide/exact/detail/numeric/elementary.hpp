@@ -1,16 +1,17 @@
 /// \file
-/// Sine and cosine, the angle of a vector and the exponential function of a decay, with the same bits on host and
-/// device: fixed operations, each rounded on its own.
+/// Sine and cosine, the angle of a vector, the exponential function of a decay and random numbers, with the same bits
+/// on host and device: fixed operations, each rounded on its own.
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
+#include <collide/core/config.hpp>
 #include <collide/exact/detail/numeric/float_bits.hpp>
 #include <collide/exact/detail/numeric/rounding.hpp>
 
 namespace collide::detail {
 
-/// The sine and the cosine of an angle.
 struct sin_cos {
   double sin, cos;
 };
@@ -80,6 +81,14 @@ COLLIDE_HD_INLINE decay decay_after(double z) {
   double const more = mul_rn(x, s);  // e^x - 1, |x| at most 0.35
   double const scale = from_bits<double>(static_cast<std::uint64_t>(1023 - count) << 52);
   return {mul_rn(scale, 1 + more), (1 - scale) - mul_rn(scale, more)};
+}
+
+/// From 0 to below 1, always the same for a number: splitmix64 by S. Vigna.
+COLLIDE_HD_INLINE double random_fraction(std::uint64_t number) {
+  std::uint64_t z = (number + 1) * 0x9e3779b97f4a7c15u;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+  return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
 }
 
 }  // namespace collide::detail

@@ -116,7 +116,6 @@ COLLIDE_HD_INLINE uint_for<T> to_ordered_bits(T x) {
   return (u & ieee_traits<T>::sign_mask) != 0 ? ~u : (u | ieee_traits<T>::sign_mask);
 }
 
-/// The inverse of `ordered`.
 template <class T>
 COLLIDE_HD_INLINE T from_ordered_bits(uint_for<T> u) {
   return from_bits<T>((u & ieee_traits<T>::sign_mask) != 0 ? (u & ~ieee_traits<T>::sign_mask) : ~u);

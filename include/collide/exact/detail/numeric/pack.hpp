@@ -81,7 +81,6 @@ struct mask {
   friend COLLIDE_HD_INLINE mask operator!(mask const& a) { return mask(~a.v); }
 };
 
-/// `N` numbers.
 template <class T, int N>
 struct pack {
   typedef T vector __attribute__((vector_size(N * sizeof(T)), aligned(16)));
@@ -195,7 +194,6 @@ COLLIDE_HD_INLINE void transpose(pack<double, 4>& a, pack<double, 4>& b, pack<do
   c.v = COLLIDE_SHUFFLE(ab, cd, 2, 3, 6, 7), d.v = COLLIDE_SHUFFLE(ab_odd, cd_odd, 2, 3, 6, 7);
 #undef COLLIDE_SHUFFLE
 }
-/// `N` numbers in memory.
 template <class T, int N>
 struct numbers_in_memory {
   typedef T vector __attribute__((vector_size(N * sizeof(T)), aligned(sizeof(T)), may_alias));

@@ -87,7 +87,6 @@ class exact_triangle {
   /// Which corner or edge it is.
   static COLLIDE_HD int feature_index_of(int projection) { return projection % 3; }
 
-  /// True if the sphere touches the triangle.
   COLLIDE_HD bool intersects() const {
     for (int projection = 0; projection < projections; ++projection) {
       // guard: touching

@@ -21,7 +21,6 @@ COLLIDE_HD_INLINE void rotate(T (&x)[3]) {
   x[2] = first;
 }
 
-/// A vector of integers of two words.
 struct fixed_width_vector {
   int_words<2> component[3];
   friend COLLIDE_HD int_words<4> dot(fixed_width_vector const& p, fixed_width_vector const& q) {

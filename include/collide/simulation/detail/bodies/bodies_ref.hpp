@@ -117,10 +117,35 @@ struct bodies_ref {
   }
 };
 
-/// True for lookups of meshes of which parts move.
 template <class Triangles>
 inline constexpr bool has_moving_mesh = false;
 template <class S, class Triangles>
 inline constexpr bool has_moving_mesh<bodies_ref<S, Triangles>> = true;
+
+/// A sphere in the frame of a body at the end of the step; 0 is that of what rests.
+template <class Triangles, class S>
+COLLIDE_HD_INLINE sphere<S> seen_from([[maybe_unused]] Triangles const& open, [[maybe_unused]] int frame,
+                                      sphere<S> const& s) {
+  if constexpr (has_moving_mesh<Triangles>) return open.mesh.seen_from(frame, s, 1);
+  return s;
+}
+
+/// The body of a triangle: 0 of what rests.
+template <class Triangles>
+COLLIDE_HD_INLINE int frame_in([[maybe_unused]] Triangles const& open, [[maybe_unused]] id triangle) {
+  if constexpr (has_moving_mesh<Triangles>) return open.mesh.frame_of(triangle);
+  return 0;
+}
+
+/// The next candidates of a sphere at the end of the step. False if there are none.
+template <class Triangles, class S, class Cursor>
+COLLIDE_HD_INLINE bool next_range(Triangles const& open, sphere<S> const& s, Cursor& cursor, candidate_range& range) {
+  constexpr std::uint32_t max_count = 1u << 30;
+  if constexpr (has_moving_mesh<Triangles>) {
+    return open.next(s, 1, cursor, max_count, range);
+  } else {
+    return open.next(s, cursor, max_count, range);
+  }
+}
 
 }  // namespace collide::detail

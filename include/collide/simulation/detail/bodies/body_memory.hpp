@@ -13,7 +13,6 @@
 
 namespace collide::detail {
 
-/// Constants of a body.
 struct body_record {
   body_motion motion;
   vec3<double> centre;  ///< of its bounding sphere, in its frame
@@ -342,7 +341,6 @@ class body_memory {
   buffer<body_report> report_;
 };
 
-/// The bodies of a scene with these effects.
 template <class S, class... Effect>
 struct bodies_of : no_bodies {};
 template <class S, class Motion, class... Effect>

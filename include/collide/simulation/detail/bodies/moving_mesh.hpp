@@ -125,7 +125,6 @@ struct moving_mesh : mesh_view<S> {
     return scaled(of_corner(0), max(1 - b - c, 0.0)) + scaled(of_corner(1), b) + scaled(of_corner(2), c);
   }
 
-  /// A body's pose at a part of the step.
   COLLIDE_HD_INLINE frame_pose pose_at(int frame, double fraction) const {
     body_frame<S> const& f = frames[frame];
     return fraction <= 0 ? f.before : fraction >= 1 ? f.now : between(f.before, f.now, fraction);
@@ -166,7 +165,6 @@ struct moving_mesh : mesh_view<S> {
   }
 };
 
-/// True for meshes of which parts move.
 template <class Mesh>
 inline constexpr bool is_moving_mesh = false;
 template <class S>

@@ -13,11 +13,8 @@ namespace collide::detail {
 /// How many places of a state are the rank's own.
 template <class State>
 COLLIDE_HD_INLINE std::size_t own_places(State const& state) {
-  if constexpr (contains<typename State::list, global_number>) {
-    return state.own;
-  } else {
-    return state.size;
-  }
+  if constexpr (contains<typename State::list, global_number>) return state.own;
+  return state.size;
 }
 
 /// Kernel functor of `for_each` over places in the order: marks newborns that overlap what was there before, or of

@@ -8,8 +8,8 @@
 #include <collide/effects/detail/effect_list.hpp>
 #include <collide/exact/detail/numeric/float_bits.hpp>
 #include <collide/exact/detail/numeric/rounding.hpp>
-#include <collide/simulation/detail/neighbours/first_neighbours.hpp>
 #include <collide/simulation/detail/neighbours/particle_order.hpp>
+#include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 
 namespace collide::detail {
@@ -230,7 +230,7 @@ struct build_lists {
     order.for_each_overlapping(i, skin, [&](std::uint32_t k, int row) {
       if (order.is_in_row(k, i, row)) run[size++] = k;
     });
-    sort_by_number(run, size);
+    heap_sort(run, size, [this](std::uint32_t a, std::uint32_t b) { return order.number_at(a) < order.number_at(b); });
     order.list(1, i) = first;
     order.list(2, i) = size = unique(run, size);
     if constexpr (ordered::has_memory) {
@@ -262,39 +262,12 @@ struct build_lists {
   COLLIDE_HD_INLINE std::uint32_t find_kept(id keeper, id other) const {
     auto const& m = order.memory;
     kept_range const kept = m.kept_of[keeper];
-    std::uint32_t low = kept.first, high = low + kept.count;
-    COLLIDE_NO_UNROLL
-    while (low < high) {
-      std::uint32_t const middle = low + (high - low) / 2;
-      if (m.kept_others[middle] == other) return middle;
-      if (m.kept_others[middle] < other) {
-        low = middle + 1;
-      } else {
-        high = middle;
-      }
-    }
-    return ordered::overflow_mark;
+    std::uint32_t const end = kept.first + kept.count;
+    std::uint32_t const k =
+        first_not_before(kept.first, end, [&](std::uint32_t at) { return m.kept_others[at] < other; });
+    return k < end && m.kept_others[k] == other ? k : ordered::overflow_mark;
   }
 
-  /// Heap sort: nothing that calls itself, and no memory.
-  COLLIDE_HD void sort_by_number(std::uint32_t* run, std::uint32_t n) const {
-    auto const sift = [&](std::uint32_t root, std::uint32_t end) {
-      for (std::uint32_t child; (child = 2 * root + 1) < end; root = child) {
-        if (child + 1 < end && order.number_at(run[child]) < order.number_at(run[child + 1])) ++child;
-        if (order.number_at(run[root]) >= order.number_at(run[child])) return;
-        std::uint32_t const moved = run[root];
-        run[root] = run[child];
-        run[child] = moved;
-      }
-    };
-    for (std::uint32_t root = n / 2; root > 0; --root) sift(root - 1, n);
-    for (std::uint32_t end = n; end > 1; --end) {
-      std::uint32_t const last = run[0];
-      run[0] = run[end - 1];
-      run[end - 1] = last;
-      sift(0, end - 1);
-    }
-  }
   COLLIDE_HD_INLINE std::uint32_t unique(std::uint32_t* run, std::uint32_t n) const {
     std::uint32_t size = 0;
     for (std::uint32_t k = 0; k < n; ++k) {

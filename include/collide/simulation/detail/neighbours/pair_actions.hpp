@@ -357,7 +357,6 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
   }
 };
 
-/// In place of `pair_actions`.
 struct no_pair_actions {
   static std::size_t bytes() { return 0; }
 };
@@ -477,7 +476,6 @@ class pair_actions {
     was_saved_ = has_before_ = false;
   }
 
-  /// Before `n` particles meet.
   void begin_meeting(std::pmr::memory_resource* resource, std::size_t n) {
     if (actions_ == nullptr) give_to_step(resource, n, pairs_.capacity());
   }
@@ -515,7 +513,6 @@ class pair_actions {
     return room_.all(resource, bytes);
   }
 
-  /// The memory of contacts of the first `n` particles, by numbers.
   saved_contacts<S> saved(list_state const& header, id const* numbers, std::size_t n) const {
     contacts_by_number<S, remembered> of(n);
     if (header.count != 0) {

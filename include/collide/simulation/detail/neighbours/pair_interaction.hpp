@@ -7,12 +7,10 @@
 #include <limits>
 
 #include <collide/effects/detail/effect_list.hpp>
-#include <collide/simulation/detail/neighbours/first_neighbours.hpp>
 #include <collide/simulation/detail/neighbours/particle_order.hpp>
 
 namespace collide::detail {
 
-/// Interaction of particles that overlap.
 template <class S, class Effects>
 struct pair_interaction {
   particle_state<S, typename Effects::all> state;
@@ -24,7 +22,6 @@ struct pair_interaction {
  protected:
   using interaction = typename sorted_particles<S, Effects>::interaction;
 
-  /// A particle before and after.
   struct pair_state {
     interaction self, changed;
     bool met = false, woken = false;
@@ -143,11 +140,8 @@ struct pair_interaction {
     }
   }
   COLLIDE_HD_INLINE bool is_inactive(interaction& p) const {
-    if constexpr (Effects::any_inactive) {
-      return effects.is_inactive(p);
-    } else {
-      return false;
-    }
+    if constexpr (Effects::any_inactive) return effects.is_inactive(p);
+    return false;
   }
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include <collide/core/geometry.hpp>
 #include <collide/effects/detail/contact_memory.hpp>
 #include <collide/effects/detail/particle.hpp>
 #include <collide/exact/detail/numeric/repeating_box.hpp>
@@ -23,6 +24,38 @@ COLLIDE_HD_INLINE void prefetch([[maybe_unused]] void const* value) {
   __builtin_prefetch(value, Written);
 #endif
 }
+
+/// The first of neighbours in the order of their numbers.
+template <std::uint32_t Room>
+struct first_neighbours {
+  id numbers[Room];
+  std::uint32_t places[Room];
+  std::uint32_t size = 0;
+  bool complete = true;
+
+  /// Once each, also if it is added again.
+  COLLIDE_HD_INLINE void add(id number, std::uint32_t place) {
+    if (size == Room && number > numbers[Room - 1]) {
+      complete = false;
+      return;
+    }
+    std::uint32_t at = size;
+    COLLIDE_NO_UNROLL
+    while (at > 0 && numbers[at - 1] > number) --at;
+    if (at > 0 && numbers[at - 1] == number) return;
+    if (size == Room) {
+      complete = false;
+      --size;
+    }
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = size++; k > at; --k) {
+      numbers[k] = numbers[k - 1];
+      places[k] = places[k - 1];
+    }
+    numbers[at] = number;
+    places[at] = place;
+  }
+};
 
 /// Centre and radius of a particle, which decide whether two overlap, to be read at once.
 template <class S>
@@ -57,7 +90,6 @@ struct small_cells {
   }
 };
 
-/// State of the lists of all particles.
 struct list_state {
   std::uint32_t rebuild;    ///< not 0: the lists are to be made anew
   std::uint32_t count;      ///< how many particles are in the order
@@ -66,7 +98,6 @@ struct list_state {
   std::uint32_t forgotten;  ///< not 0: there was no room for what some contact remembers
 };
 
-/// State of the lists on ranks.
 struct list_state_on_ranks : list_state {
   std::uint32_t at_border;  ///< how many particles have copies of other ranks' on their list
 };
@@ -171,19 +202,10 @@ struct sorted_particles {
     return p;
   }
 
-  /// On a CPU: what is loaded soon is on its way.
-  COLLIDE_HD_INLINE void fetch(std::size_t i) const {
-    prefetch(spheres + i);
-    fetch_columns(i, copied{});
-  }
-
   /// The number of the particle at a place, in the order of which its neighbours meet it.
   COLLIDE_HD_INLINE id number_at(std::uint32_t place) const {
-    if constexpr (contains<copied, global_number>) {
-      return copies.at(global_number{})[place];
-    } else {
-      return number_of_place(place);
-    }
+    if constexpr (contains<copied, global_number>) return copies.at(global_number{})[place];
+    return number_of_place(place);
   }
   COLLIDE_HD_INLINE id number_of_place(std::size_t place) const {
     if constexpr (Effects::may_be_reordered) {
@@ -194,11 +216,8 @@ struct sorted_particles {
 
   /// True of a particle that a source had just made when the lists were made.
   COLLIDE_HD_INLINE bool is_new([[maybe_unused]] std::uint32_t place) const {
-    if constexpr (has_absent) {
-      return known[numbers[place]] >= newborn;
-    } else {
-      return false;
-    }
+    if constexpr (has_absent) return known[numbers[place]] >= newborn;
+    return false;
   }
 
   /// True if the surfaces of two particles are less than `skin` apart.
@@ -265,7 +284,6 @@ struct sorted_particles {
     if (curve != nullptr) store_relaxed(curve + place / cells.stride, cells.on_curve(cells.of(x.x(), x.y(), x.z())));
   }
 
-  /// Place of a particle's cell in the table.
   COLLIDE_HD_INLINE std::uint32_t place_in_table(vec3<S> const& x, [[maybe_unused]] S own_radius) const {
     if constexpr (sizes_differ) {
       if (own_radius <= small.largest) return small.number(small.cells.of(x.x(), x.y(), x.z()));
@@ -273,7 +291,6 @@ struct sorted_particles {
     return cells.number(cells.of(x.x(), x.y(), x.z()));
   }
 
-  /// The item of what is remembered of a neighbour in a run.
   COLLIDE_HD_INLINE std::size_t run_item(std::uint32_t n) const { return listed * capacity + n; }
 
   /// True if the contact of two particles is kept with the first while lists are made anew.
@@ -302,11 +319,6 @@ struct sorted_particles {
   }
 
  private:
-  template <class... C>
-  COLLIDE_HD_INLINE void fetch_columns([[maybe_unused]] std::size_t i, columns<C...>) const {
-    (prefetch(copies.at(C{}) + i * std::size_t(column_layout<C, S>::width)), ...);
-  }
-
   COLLIDE_HD_INLINE bool is_small([[maybe_unused]] std::uint32_t i) const {
     if constexpr (sizes_differ) return references[i].radius <= small.largest;
     return false;

@@ -26,7 +26,6 @@ struct stored_vec3 {
   COLLIDE_HD_INLINE vec3<S> get() const { return {components[0], components[1], components[2]}; }
 };
 
-/// How high a point is above a plane.
 template <class S>
 COLLIDE_HD_INLINE S height_above(stored_vec3<S> const& on_plane, stored_vec3<S> const& normal, vec3<S> const& x) {
   S above = 0;
@@ -105,7 +104,6 @@ struct contact_history : remaining_motion<S, IsSwept> {
     ++contacts_here;
     return contacts[slot];
   }
-  /// The contact `i` before the last one.
   COLLIDE_HD_INLINE recorded_contact<S, HasBodies> const& before_last(int i) const {
     return contacts[(contact_count - 1 - i) % max_recorded_contacts];
   }

@@ -89,7 +89,6 @@ struct span_frames<true> {
   COLLIDE_HD_INLINE int frame(std::uint32_t i) const { return of[i]; }
 };
 
-/// Scratch memory of a block for a batch of particles.
 template <class S, bool IsSwept, bool HasBodies, class Block>
 struct contact_scratch : span_frames<HasBodies> {
   using particle_type = active_particle<S, IsSwept, HasBodies>;

@@ -20,11 +20,9 @@ namespace collide::detail {
 /// get the second half of that.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE auto first_kick([[maybe_unused]] Particle const& p) {
-  if constexpr (contains<typename Particle::list, held>) {
+  if constexpr (contains<typename Particle::list, held>)
     return p[held{}] == owes_a_kick ? Context::kick_before + Context::kick_after : Context::kick_before;
-  } else {
-    return Context::kick_before;
-  }
+  return Context::kick_before;
 }
 
 /// The beginning of a particle's step. Returns for how long all accelerate it in the first kick: 0 if the mesh holds
@@ -77,11 +75,9 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
 /// The part of a step's acceleration with which it ends, of a particle that the mesh does not hold.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE auto last_kick([[maybe_unused]] Particle const& p) {
-  if constexpr (contains<typename Particle::list, held>) {
+  if constexpr (contains<typename Particle::list, held>)
     return p[held{}] == owes_a_kick ? typename Context::scalar(0) : Context::kick_after;
-  } else {
-    return Context::kick_after;
-  }
+  return Context::kick_after;
 }
 
 /// The end of a particle's step: the second kick, and what effects do last.
@@ -185,7 +181,6 @@ struct integration {
     }
   }
 
-  /// Moves a particle of a discrete step.
   COLLIDE_HD_INLINE void move(integrated& p) const {
     if constexpr (may_ride) {
       if (int const frame = frame_ridden(p)) {
@@ -269,7 +264,6 @@ struct integration {
     integrate(block, s, first, p, inactive, filter);
   }
 
-  /// Bodies that move wake particles that sleep.
   static constexpr bool may_wake = has_bodies && contains<typename effects_type::inactive_reads, slow_steps>;
 
   /// True of a particle that sleeps where a body that moves may touch it.

@@ -112,7 +112,6 @@ COLLIDE_HD_INLINE std::uint64_t contact_key(S time, contact<S> const& c) {
   return std::uint64_t{first} << 34 | std::uint64_t{static_cast<std::uint32_t>(c.feature)} << 32 | c.triangle;
 }
 
-/// The time of a contact, from its key.
 template <class S>
 COLLIDE_HD_INLINE S time_of_key(std::uint64_t key) {
   constexpr auto ticks = std::uint32_t{1} << key_bits;

@@ -3,8 +3,9 @@
 /// where effects are told of it.
 #pragma once
 
+#include <collide/effects/detail/effect_list.hpp>
+#include <collide/simulation/detail/bodies/bodies_ref.hpp>
 #include <collide/simulation/detail/bodies/moving_mesh.hpp>
-#include <collide/simulation/detail/step/step_context.hpp>
 
 namespace collide::detail {
 
@@ -106,7 +107,6 @@ COLLIDE_HD_INLINE vec3<double> carried(body_frame<S> const& f, vec3<double> cons
   return f.now.to_world(f.before.to_local(x));
 }
 
-/// How the surface moves that a particle sticks to.
 struct ridden_surface {
   vec3<double> before, after;  ///< its velocity when the step begins, and ends
   vec3<double> drift;          ///< velocity on the straight line on which it takes the particle in the step

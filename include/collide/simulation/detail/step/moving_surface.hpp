@@ -12,7 +12,6 @@
 
 namespace collide::detail {
 
-/// The sum of the sizes of coordinates.
 template <class S>
 COLLIDE_HD_INLINE S sum_of_sizes(vec3<S> const& x) {
   vec3<S> const sizes = absolute(x);

@@ -160,37 +160,19 @@ struct release_stuck {
     id first = no_id;
     auto cursor = near.begin(s);
     candidate_range range{};
-    while (next(near, s, cursor, range)) {
+    while (next_range(near, s, cursor, range)) {
       for (std::uint32_t k = 0; k < range.count; ++k) {
         cell_item const e = range.at(k);
         if (e.triangle < first && touches(near, s, e.triangle)) first = e.triangle;
       }
     }
-    if (first == no_id) return 0;
-    if constexpr (has_moving_mesh<Triangles>) {
-      return static_cast<std::uint8_t>(near.mesh.frame_of(first) + 1);
-    } else {
-      return 1;
-    }
-  }
-  template <class S, class Cursor>
-  COLLIDE_HD static bool next(Triangles const& near, sphere<S> const& s, Cursor& cursor, candidate_range& range) {
-    constexpr std::uint32_t max_count = 1u << 30;
-    if constexpr (has_moving_mesh<Triangles>) {
-      return near.next(s, 1, cursor, max_count, range);
-    } else {
-      return near.next(s, cursor, max_count, range);
-    }
+    return first == no_id ? std::uint8_t{0} : static_cast<std::uint8_t>(frame_in(near, first) + 1);
   }
   template <class S>
   COLLIDE_HD bool touches(Triangles const& near, sphere<S> const& s, id triangle) const {
-    sphere<S> seen = s;
-    if constexpr (has_moving_mesh<Triangles>) {
-      int const frame = near.mesh.frame_of(triangle);
-      if (are_driven && frame != 0) return false;
-      seen = near.mesh.seen_from(frame, s, 1);
-    }
-    return contact_double(near.mesh[triangle], seen).depth >= 0;
+    int const frame = frame_in(near, triangle);
+    if (are_driven && frame != 0) return false;
+    return contact_double(near.mesh[triangle], seen_from(near, frame, s)).depth >= 0;
   }
 };
 

@@ -11,7 +11,6 @@ namespace collide::detail {
 /// The frame of what rests, where there is no other.
 struct only_frame {};
 
-/// The motion of a particle relative to a surface at rest.
 template <class S>
 struct motion_in_world {
   vec3<S> displacement;  ///< in the rest of the step; of a swept particle
@@ -43,7 +42,6 @@ struct motion_in_world {
   COLLIDE_HD_INLINE void advect(stored_vec3<S>&) const {}
 };
 
-/// A surface at rest where a particle touches it.
 struct surface_at_rest {
   template <class S>
   COLLIDE_HD_INLINE vec3<S> const& velocity_seen(vec3<S> const& v) const {

@@ -54,40 +54,15 @@ struct wake_by_bodies {
   }
 };
 
-/// A sphere in the frame of a body at the end of the step; 0 is that of what rests.
-template <class Triangles, class S>
-COLLIDE_HD_INLINE sphere<S> seen_from([[maybe_unused]] Triangles const& open, [[maybe_unused]] int frame,
-                                      sphere<S> const& s) {
-  if constexpr (has_moving_mesh<Triangles>) {
-    return open.mesh.seen_from(frame, s, 1);
-  } else {
-    return s;
-  }
-}
-
-/// The body of a triangle: 0 of what rests.
-template <class Triangles>
-COLLIDE_HD_INLINE int frame_in([[maybe_unused]] Triangles const& open, [[maybe_unused]] id triangle) {
-  if constexpr (has_moving_mesh<Triangles>) return open.mesh.frame_of(triangle);
-  return 0;
-}
-
 /// f(triangle, frame) for each triangle whose box a sphere meets, some of them several times; or for one of `shares`
 /// shares of these.
 template <class Triangles, class S, class F>
 COLLIDE_HD_INLINE void for_each_box_met(Triangles const& open, sphere<S> const& shape, std::uint32_t share,
                                         std::uint32_t shares, F const& f) {
-  constexpr std::uint32_t together = 4, all = 1u << 30;
+  constexpr std::uint32_t together = 4;
   auto cursor = open.begin(shape);
   candidate_range range{};
-  auto const next = [&] {
-    if constexpr (has_moving_mesh<Triangles>) {
-      return open.next(shape, 1, cursor, all, range);
-    } else {
-      return open.next(shape, cursor, all, range);
-    }
-  };
-  while (next()) {
+  while (next_range(open, shape, cursor, range)) {
     int frame = 0;
     if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
     sphere<S> const seen = seen_from(open, frame, shape);
@@ -145,7 +120,6 @@ struct begin_pressing {
   }
 };
 
-/// Forgets what the mesh gave to a particle.
 template <class State>
 COLLIDE_HD_INLINE void forget_mesh_kicks([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
   if constexpr (contains<typename State::list, mesh_kick_count>) {

@@ -26,6 +26,7 @@
 #include <collide/core/contact.hpp>
 #include <collide/exact/detail/geometry/closest_point.hpp>
 #include <collide/mesh.hpp>
+#include <collide/spaces/detail/algorithms.hpp>
 
 namespace collide::detail {
 
@@ -123,15 +124,9 @@ class overlap_list {
     items_ = memory;
     size = 0;
   }
-  /// A heap sort; then leaves out those that were added again.
+  /// Sorts, and leaves out those that were added again.
   COLLIDE_HD void sort() {
-    COLLIDE_NO_UNROLL
-    for (std::uint32_t k = size / 2; k-- > 0;) sift(k, size);
-    COLLIDE_NO_UNROLL
-    for (std::uint32_t n = size; n > 1;) {
-      swap(0, --n);
-      sift(0, n);
-    }
+    heap_sort(items_, size, [this](overlap_item const& a, overlap_item const& b) { return comes_before(a, b); });
     std::uint32_t n = 0;
     COLLIDE_NO_UNROLL
     for (std::uint32_t k = 0; k < size; ++k)
@@ -301,19 +296,6 @@ class overlap_list {
     double const rank_a = rank_of(a), rank_b = rank_of(b);
     if (rank_a != rank_b) return rank_a < rank_b;
     return a.kind != b.kind ? a.kind < b.kind : a.triangle < b.triangle;
-  }
-  COLLIDE_HD_INLINE void swap(std::uint32_t i, std::uint32_t k) {
-    overlap_item const item = items_[i];
-    items_[i] = items_[k];
-    items_[k] = item;
-  }
-  COLLIDE_HD_INLINE void sift(std::uint32_t k, std::uint32_t n) {
-    COLLIDE_NO_UNROLL
-    for (std::uint32_t child; (child = 2 * k + 1) < n; k = child) {
-      if (child + 1 < n && comes_before(items_[child], items_[child + 1])) ++child;
-      if (!comes_before(items_[k], items_[child])) return;
-      swap(k, child);
-    }
   }
 
   overlap_item own_[capacity];
