@@ -260,7 +260,7 @@ def measure(scene, s, row):
                 wrong = wrong_triangles(points[:n], corners, mine[:n], found[:n])
             else:
                 n = MOST
-                wrong = wrong_sides(beside, corners, mine[:n], one.inside(beside))
+                wrong = wrong_sides(beside, corners, expected[call], one.inside(beside))
             row(scene, call, one.name, points=len(points), build_ms=build, query_ms=ms, checked=n, wrong=int(wrong[1]),
                 wrong_of_collide=int(wrong[0]))
 
