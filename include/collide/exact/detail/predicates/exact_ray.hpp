@@ -59,7 +59,7 @@ std::int32_t cross_ray_in_lane(triangle<S> const& t, S x, S y, S z) {
   auto const across =
       larger(larger(larger(size(ax), size(ay)), larger(size(bx), size(by))), larger(size(cx), size(cy)));
   auto const along = larger(larger(size(az), size(bz)), size(cz));
-  auto const is_usual = [&](auto bits) { return (bits >= to_bits(smallest)) & (bits <= to_bits(largest)); };
+  auto const is_usual = [](auto bits) { return bits - to_bits(smallest) <= to_bits(largest) - to_bits(smallest); };
   S const ab = ax * by - ay * bx, bc = bx * cy - by * cx, ca = cx * ay - cy * ax, sum = bc * az + ca * bz + ab * cz;
   S const least = -larger(larger(-ab, -bc), -ca), most = larger(larger(ab, bc), ca);
   S const width = from_bits<S>(across), area = width * width, height = select(least > 0, sum, -sum);
@@ -67,7 +67,8 @@ std::int32_t cross_ray_in_lane(triangle<S> const& t, S x, S y, S z) {
   S const error = 16 * u * area, height_error = 128 * u * area * from_bits<S>(along);
   bool const beside = (least < -error) & (most > error), within = (least > error) | (most < -error);
   bool const above = within & (height > height_error), below = within & (height < -height_error);
-  return select(is_usual(across) & is_usual(along), select(above, 1, select(beside | below, 0, -1)), -1);
+  int const usual = int{is_usual(across)} & int{is_usual(along)};
+  return select(usual != 0, select(above, 1, select(beside | below, 0, -1)), -1);
 }
 
 COLLIDE_HD inline int sign_of(double x) { return x < 0 ? -1 : (x > 0 ? 1 : 0); }
