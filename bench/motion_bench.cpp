@@ -26,7 +26,7 @@
 #include <collide/bucket.cuh>
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
-#include <collide/sinks/contacts.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/spaces/upload.hpp>
 
 #include "motion_scenes.hpp"

@@ -36,7 +36,7 @@
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/integrators.hpp>
-#include <collide/effects/lost.hpp>
+#include <collide/effects/lost_motion.hpp>
 #include <collide/effects/polydisperse.hpp>
 #include <collide/simulation.cuh>
 #include <collide/simulation/energy.hpp>

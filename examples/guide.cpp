@@ -10,9 +10,9 @@
 #include <collide/checks/validate.hpp>
 #include <collide/checks/validate_closed.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/sinks/closest.hpp>
 #include <collide/sinks/contains.hpp>
 #include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
 #include <collide/sinks/nearest.hpp>
 #include <collide/sinks/signed_distance.hpp>
 

@@ -8,7 +8,7 @@
 #include <collide/effects/bounce.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
-#include <collide/sinks/closest.hpp>
+#include <collide/sinks/earliest.hpp>
 
 namespace {
 

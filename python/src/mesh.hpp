@@ -17,9 +17,9 @@
 #include <collide/detectors/posed.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/sinks/closest.hpp>
-#include <collide/sinks/contacts.hpp>
 #include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/sinks/k_nearest.hpp>
 #include <collide/sinks/signed_distance.hpp>
 #include <collide/sinks/winding_number.hpp>

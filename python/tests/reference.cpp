@@ -20,9 +20,9 @@
 #include <collide/effects/gravity.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
-#include <collide/sinks/closest.hpp>
-#include <collide/sinks/contacts.hpp>
 #include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/sinks/k_nearest.hpp>
 #include <collide/sinks/signed_distance.hpp>
 

@@ -1,6 +1,6 @@
 // expect: collide: impacts need a narrow phase for spheres that move
 #include <collide/all_pairs.cuh>
-#include <collide/sinks/contacts.hpp>
+#include <collide/sinks/impacts.hpp>
 
 int main() {
   collide::detector<collide::all_pairs> detector;

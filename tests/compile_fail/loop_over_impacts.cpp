@@ -1,7 +1,7 @@
 // expect: collide: results are in memory of the space, which the host may be unable to read: use to_host()
 #include <collide/bucket.cuh>
 #include <collide/karabassi_swept.hpp>
-#include <collide/sinks/contacts.hpp>
+#include <collide/sinks/impacts.hpp>
 
 /// The host, but it says of its memory what the CUDA spaces say of theirs.
 struct device : collide::host {

@@ -16,7 +16,7 @@
 #include <collide/effects/friction.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/integrators.hpp>
-#include <collide/effects/lost.hpp>
+#include <collide/effects/lost_motion.hpp>
 #include <collide/effects/polydisperse.hpp>
 #include <collide/effects/sleep.hpp>
 #include <collide/effects/sphere_contact.hpp>
@@ -29,8 +29,8 @@
 #include <collide/ranks/thread_ranks.hpp>
 #include <collide/simulation.cuh>
 #include <collide/simulation/checkpoint.hpp>
-#include <collide/sinks/closest.hpp>
-#include <collide/sinks/contacts.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/spaces/atomic_add.hpp>
 #include <collide/spaces/upload.hpp>
 

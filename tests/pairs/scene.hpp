@@ -13,6 +13,7 @@
 #include <collide/effects/contact_work.hpp>
 #include <collide/effects/external_forces.hpp>
 #include <collide/effects/lost.hpp>
+#include <collide/effects/lost_motion.hpp>
 #include <collide/effects/mass_flow.hpp>
 #include <collide/effects/wear.hpp>
 #include <collide/simulation/energy.hpp>

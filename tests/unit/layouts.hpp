@@ -12,7 +12,7 @@
 
 #include <collide/core/moving_spheres.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/sinks/contacts.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/spaces/upload.hpp>
 
 #include "compositions.hpp"

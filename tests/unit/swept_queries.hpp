@@ -16,8 +16,8 @@
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
 #include <collide/karabassi_swept.hpp>
-#include <collide/sinks/closest.hpp>
-#include <collide/sinks/contacts.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 
 namespace tests {
 

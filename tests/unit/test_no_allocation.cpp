@@ -8,9 +8,9 @@
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
 #include <collide/karabassi_swept.hpp>
-#include <collide/sinks/closest.hpp>
-#include <collide/sinks/contacts.hpp>
 #include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 
 #include "counted_new.hpp"
 #include "type_erased_detector.hpp"

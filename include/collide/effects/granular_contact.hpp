@@ -8,9 +8,13 @@
 #include <collide/effects/detail/particle_access.hpp>
 #include <collide/effects/detail/sphere_action.hpp>
 #include <collide/effects/granular/cohesion.hpp>
-#include <collide/effects/granular/normal_forces.hpp>
+#include <collide/effects/granular/cundall_strack.hpp>
+#include <collide/effects/granular/dashpot.hpp>
+#include <collide/effects/granular/hertz.hpp>
+#include <collide/effects/granular/linear.hpp>
+#include <collide/effects/granular/mindlin.hpp>
 #include <collide/effects/granular/rolling.hpp>
-#include <collide/effects/granular/tangential_forces.hpp>
+#include <collide/effects/granular/torsion.hpp>
 
 namespace collide {
 

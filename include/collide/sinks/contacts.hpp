@@ -1,5 +1,5 @@
 /// \file
-/// Sinks: all colliding pairs with their contacts, or, of spheres that move, their impacts.
+/// Sink: all colliding pairs with their contacts.
 #pragma once
 
 #include <collide/sinks/detail/array_in_space.hpp>
@@ -14,15 +14,6 @@ template <class S = float>
 class contacts : public detail::records<contact<S>, S> {
  public:
   using detail::records<contact<S>, S>::records;
-};
-
-/// The impact of every pair that touches within the step: when it first does, and the contact then. In memory of the
-/// space, or in the caller's. `query` waits once, for their number. `S` is the scalar of the detector. Needs a narrow
-/// phase for spheres that move, such as `karabassi_swept`.
-template <class S = float>
-class impacts : public detail::records<impact<S>, S> {
- public:
-  using detail::records<impact<S>, S>::records;
 };
 
 }  // namespace collide

@@ -212,7 +212,7 @@ def lost() -> Effect:
     """Marks particles whose position or velocity is NaN or infinite: the column is_lost."""
 
 
-@_describes(Effect, "effects/lost")
+@_describes(Effect)
 def lost_motion() -> Effect:
     """Counts steps whose displacement is lost to rounding: the column lost_steps."""
 

@@ -16,12 +16,12 @@ Test = Literal["spring", "spring_and_dashpot"]
 _EXAMPLES = {"normal": "hertz", "tangential": "mindlin", "rolling": "epsd", "cohesion": "sjkr"}
 
 
-@_describes(Law, "effects/granular/normal_forces", part="normal")
+@_describes(Law, "effects/granular/linear", part="normal")
 def linear(stiffness: float = 1000) -> Law:
     """Normal law: a spring of constant stiffness (force per overlap), and the dashpot that gives the restitution."""
 
 
-@_describes(Law, "effects/granular/normal_forces", part="normal")
+@_describes(Law, "effects/granular/hertz", part="normal")
 def hertz() -> Law:
     """Normal law: Hertz' force of elastic spheres, and the dashpot that gives the restitution."""
 
@@ -31,19 +31,19 @@ def none() -> Law:
     """In place of a tangential or rolling law, or one of cohesion: there is none."""
 
 
-@_describes(Law, "effects/granular/tangential_forces", part="tangential")
+@_describes(Law, "effects/granular/dashpot", part="tangential")
 def dashpot(damping: float = 0) -> Law:
     """Tangential law: a dashpot (force per slip) up to Coulomb's limit. Remembers nothing; a pile creeps."""
 
 
-@_describes(Law, "effects/granular/tangential_forces", part="tangential")
+@_describes(Law, "effects/granular/cundall_strack", part="tangential")
 def cundall_strack(stiffness_ratio: float = 2 / 7, damping_ratio: float = 0.5, test: Test = "spring_and_dashpot",
                    keeps_length: bool = False, turns_about_normal: bool = False) -> Law:
     """Tangential law: a spring that remembers slip and a dashpot, parts of the normal ones, up to Coulomb's limit: with
     `linear` LAMMPS' gran/hooke/history. The other arguments are those of `mindlin`."""
 
 
-@_describes(Law, "effects/granular/tangential_forces", part="tangential")
+@_describes(Law, "effects/granular/mindlin", part="tangential")
 def mindlin(stiffness_factor: float = 1, damping: Damping = "of_tangent", test: Test = "spring", keeps_length: bool = False,
             turns_about_normal: bool = False) -> Law:
     """Tangential law, with `hertz`: a spring that remembers slip, after Mindlin, up to Coulomb's limit.
@@ -55,14 +55,14 @@ def mindlin(stiffness_factor: float = 1, damping: Damping = "of_tangent", test: 
     """
 
 
-@_describes(Law, "effects/granular/tangential_forces", part="tangential")
+@_describes(Law, "effects/granular/mindlin", part="tangential")
 def mindlin_rescale(stiffness_factor: float = 1, damping: Damping = "of_tangent", test: Test = "spring",
                     keeps_length: bool = False, turns_about_normal: bool = False) -> Law:
     """`mindlin`, whose spring also becomes shorter where the area of contact does, as LAMMPS' of that name. Cycles of load
     and slip may make energy, as with `mindlin`."""
 
 
-@_describes(Law, "effects/granular/tangential_forces", part="tangential")
+@_describes(Law, "effects/granular/mindlin", part="tangential")
 def mindlin_force(stiffness_factor: float = 1, damping: Damping = "of_tangent", test: Test = "spring",
                   keeps_length: bool = False, turns_about_normal: bool = False, rescales: bool = True) -> Law:
     """`mindlin`, whose force a growing load leaves as it is, and a falling one reduces: no cycle of load and slip makes
@@ -106,11 +106,11 @@ def _beside(rolling, law):
     return law
 
 
-@_describes(Law, "effects/granular/rolling", part="rolling")
+@_describes(Law, "effects/granular/torsion", part="rolling")
 def _marshall(stiffness_ratio: float, damping_ratio: float) -> Law: ...
 
 
-@_describes(Law, "effects/granular/rolling", part="rolling")
+@_describes(Law, "effects/granular/torsion", part="rolling")
 def _torsion(stiffness: float, damping: float, friction: float) -> Law: ...
 
 

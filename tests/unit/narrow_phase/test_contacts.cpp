@@ -11,6 +11,7 @@
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/closest.hpp>
+#include <collide/sinks/earliest.hpp>
 
 #include "checks.hpp"
 #include "narrow_phase/narrow_phase.hpp"

@@ -20,9 +20,9 @@
 #include <collide/bucket.cuh>
 #include <collide/karabassi_swept.hpp>
 #include <collide/ranks/distributed.hpp>
-#include <collide/sinks/closest.hpp>
-#include <collide/sinks/contacts.hpp>
 #include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 
 #include "swept_queries.hpp"
 

@@ -12,7 +12,7 @@
 #include <collide/effects/drag.hpp>
 #include <collide/effects/emit.hpp>
 #include <collide/effects/friction.hpp>
-#include <collide/effects/lost.hpp>
+#include <collide/effects/lost_motion.hpp>
 #include <collide/effects/sleep.hpp>
 #include <collide/effects/spin.hpp>
 #include <collide/effects/wind.hpp>

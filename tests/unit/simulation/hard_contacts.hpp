@@ -5,7 +5,7 @@
 
 #include <collide/effects/friction.hpp>
 #include <collide/effects/integrators.hpp>
-#include <collide/effects/lost.hpp>
+#include <collide/effects/lost_motion.hpp>
 #include <collide/effects/spin.hpp>
 
 #include "simulation/simulation.hpp"

@@ -1,6 +1,6 @@
 /// Laws of granular contact on the host in double, against closed forms and an integrator of one contact that shares no
 /// code with the library.
-#include <collide/effects/lost.hpp>
+#include <collide/effects/lost_motion.hpp>
 #include <collide/simulation/energy.hpp>
 
 #include "simulation/granular.hpp"

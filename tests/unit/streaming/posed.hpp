@@ -16,9 +16,9 @@
 #include <collide/all_pairs.cuh>
 #include <collide/detectors/posed.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/sinks/closest.hpp>
-#include <collide/sinks/contacts.hpp>
 #include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/sinks/k_nearest.hpp>
 #include <collide/spaces/upload.hpp>
 

@@ -13,7 +13,7 @@
 #include <collide/bucket.cuh>
 #include <collide/detectors/streamed.cuh>
 #include <collide/karabassi_swept.hpp>
-#include <collide/sinks/contacts.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/spaces/upload.hpp>
 
 #include "io/scenes.hpp"
