@@ -384,6 +384,35 @@ void check_sleep(Space const& space) {
   CHECK(made.positions()[2] < 0.06f);
 }
 
+/// One of a row that sleeps is woken by what falls on it, whether that has the first number or the last; others, at the
+/// ends, sleep on.
+template <class Space>
+void check_sleep_in_a_row(Space const& space) {
+  for (bool const first : {false, true}) {
+    world<float> w;
+    add_floor(w, 4, 8);
+    w.radius = 0.1f;
+    if (first) w.particle(0.05, 0, 3);
+    for (int k = 0; k < 5; ++k) w.particle(0.201 * (k - 2), 0, 0.11);
+    if (!first) w.particle(0.05, 0, 3);
+    running<collide::simulation<meets_mesh<Space>, collide::sleep, sphere_contact, gravity, drag, bounce>> made(
+        space, w, collide::sleep{0.02, 100}, sphere_contact::from_restitution(0.5, 0.01, 0.1, 1000), gravity{},
+        drag{2, 0}, bounce{0.3});
+    auto const slow_of = [&] { return made.simulation.template to_host<slow_steps>(); };
+    std::size_t const row = first ? 1 : 0;
+    made.simulation.steps(800, 5e-4f);
+    for (std::size_t i = row; i < row + 5; ++i) CHECK(slow_of()[i] >= 100);
+    bool is_woken = false;
+    for (int k = 0; k < 100 && !is_woken; ++k) {
+      made.simulation.steps(20, 5e-4f);
+      is_woken = slow_of()[row + 2] < 100;
+      CHECK(slow_of()[row] >= 100);
+      CHECK(slow_of()[row + 4] >= 100);
+    }
+    CHECK(is_woken);
+  }
+}
+
 /// A particle that sticks stays where it is until forces are too strong.
 template <class NarrowPhase, class Space>
 void check_stick(Space const& space) {

@@ -124,7 +124,10 @@ TEST_CASE("effects: neighbour lists are kept while nothing has come or moved far
   CHECK(after(40) == 0);
 }
 
-TEST_CASE("effects: what rests sleeps until it is hit") { tests::check_sleep(host(1)); }
+TEST_CASE("effects: what rests sleeps until it is hit") {
+  tests::check_sleep(host(1));
+  tests::check_sleep_in_a_row(host(1));
+}
 
 TEST_CASE("effects: what sticks stays until it is pulled off") {
   tests::check_stick<karabassi<>>(host(1));

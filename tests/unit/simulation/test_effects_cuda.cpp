@@ -36,6 +36,7 @@ TEST_CASE("effects: on the GPU, a pile of spheres stays in a closed mesh for 1e5
 
 TEST_CASE("effects: on the GPU, sleeping and sticking") {
   tests::check_sleep(cuda_shared());
+  tests::check_sleep_in_a_row(cuda_shared());
   tests::check_stick<karabassi<>>(cuda_shared());
 }
 

@@ -34,6 +34,11 @@ struct pair_interaction {
     return order.is_of_another(number) || (what == meeting::of_woken && !is_just_woken(state, number));
   }
 
+  COLLIDE_HD_INLINE bool is_inactive(interaction& p) const {
+    if constexpr (Effects::any_inactive) return effects.is_inactive(p);
+    return false;
+  }
+
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_other = !is_inactive(other);
@@ -139,10 +144,6 @@ struct pair_interaction {
       return !is_inactive(p);
     }
   }
-  COLLIDE_HD_INLINE bool is_inactive(interaction& p) const {
-    if constexpr (Effects::any_inactive) return effects.is_inactive(p);
-    return false;
-  }
 };
 
 /// Kernel functor of `for_each` over places in the order: a particle meets those on its list, or in its run, that
@@ -167,6 +168,7 @@ struct interact_listed : pair_interaction<S, Effects> {
     auto const& places = this->order;
     bool const is_listed = places.list(0, self) != places.overflow_mark;
     pair_state p(places.load(self));
+    if (is_listed && is_among_inactive(self, p)) return this->store(p);
     if constexpr (ordered::has_memory) {
       if (is_listed) fetch_records(self);
     }
@@ -183,6 +185,20 @@ struct interact_listed : pair_interaction<S, Effects> {
   }
 
  private:
+  /// True of a particle that takes no part, as no one on its list does: nothing happens to it.
+  COLLIDE_HD_INLINE bool is_among_inactive([[maybe_unused]] std::uint32_t self, [[maybe_unused]] pair_state& p) const {
+    if constexpr (Effects::any_inactive && !Effects::keeps_support) {
+      auto const& places = this->order;
+      if (!this->is_inactive(p.self)) return false;
+      for (std::uint32_t k = 0; k < ordered::listed && places.list(k, self) != self; ++k) {
+        auto other = places.load(places.list(k, self));
+        if (!this->is_inactive(other)) return false;
+      }
+      return true;
+    }
+    return false;
+  }
+
   /// On a CPU: what the contacts of a particle remember comes into the cache all at a time.
   COLLIDE_HD_INLINE void fetch_records([[maybe_unused]] std::size_t i) const {
 #if !defined(__CUDA_ARCH__)
