@@ -9,13 +9,13 @@ namespace collide {
 
 /// A particle that has been slower than `speed`, and touched something, in `steps` steps (at most 127), and not been
 /// faster in between, sleeps: it is left out until another particle that is awake and faster than that overlaps it, or
-/// the mesh changes, and costs the byte that says so; beside effects between particles also such a byte of each
-/// neighbour, and where reactions of the mesh are summed up, or a neighbour is awake, all that neighbours do. What
-/// touches nothing does not fall asleep, however slow it is: a step in which nothing is touched does not count. The
-/// mesh, other particles and `box_walls` are touched; an effect of your own that holds particles in its `end_step` says
-/// so in the column `in_contact`. Name `sleep` behind those, which stop particles only at the end of a step. One that
-/// vanishes in a sink while it is slow wakes nothing. A clump sleeps as a whole, and wakes where one of its spheres
-/// does.
+/// the mesh changes, and costs the byte that says so. Beside effects between particles it also reads that byte of each
+/// neighbour; it goes through its neighbours as others do where one of them is awake, where they are more than 16, and
+/// where an effect has `on_mesh_impulse`, as it then passes their weight on. What touches nothing does not fall asleep,
+/// however slow it is: a step in which nothing is touched does not count. The mesh, other particles and `box_walls` are
+/// touched; an effect of your own that holds particles in its `end_step` says so in the column `in_contact`. Name
+/// `sleep` behind those, which stop particles only at the end of a step. One that vanishes in a sink while it is slow
+/// wakes nothing. A clump sleeps as a whole, and wakes where one of its spheres does.
 struct sleep {
   using reads = columns<velocity>;
   using optional_reads = columns<angular_velocity, radius>;

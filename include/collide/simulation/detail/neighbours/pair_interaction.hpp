@@ -185,7 +185,7 @@ struct interact_listed : pair_interaction<S, Effects> {
   }
 
  private:
-  /// True of a particle that takes no part, as no one on its list does: nothing happens to it.
+  /// True of a particle that is inactive, as are all on its list: none of them does anything to it.
   COLLIDE_HD_INLINE bool is_among_inactive([[maybe_unused]] std::uint32_t self, [[maybe_unused]] pair_state& p) const {
     if constexpr (Effects::any_inactive && !Effects::keeps_support) {
       auto const& places = this->order;
