@@ -6,7 +6,7 @@
 /^\/\/\/ (Kernel|Search) functor/,/^\};/s/.*//
 # members of classes that the library calls: concepts.hpp, effect.hpp, ranks.hpp and docs/extending.md say what each is for
 s/^  (COLLIDE_HD(_INLINE)? )?(void|bool|detail::medium|detail::medium_at_rest) (run|is_inactive|accelerate|on_mesh_contact|after_mesh_contact|on_mesh_impulse|holds|resistance|on_pair_contact|on_mesh_overlap|try_wake|begin_step|end_step|check_parameters|for_each_part|all_gather|reduce|exchange_counts|exchange)\(/\/** \\private *\/ &/
-s/^  using (value|block|reads|writes|optional_writes|optional_reads|runs_after|remembers) =( |$)/\/** \\private *\/ &/
+s/^  using (value|block|reads|writes|optional_writes|optional_reads|remembers) =( |$)/\/** \\private *\/ &/
 s/^  static constexpr (S initial|std::uint8_t initial|bool (saves_parameters|keeps_ids_alone|asks_forces|makes_particles|begins_on_ranks)|std::size_t copies) = /\/** \\private *\/ &/
 s/^  class index/\/** \\private *\/ &/
 s/^class bucket::index/\/** \\private *\/ &/

@@ -26,8 +26,7 @@ class bookkeeping_of final : public bookkeeping {
   }
   std::vector<double> contact_report(void const* of) const override {
     collide::contact_counts const n = collide::contact_report(whole(of));
-    return {static_cast<double>(n.contacts), n.coordination, static_cast<double>(n.deep), n.largest_overlap,
-            n.longest_good_step};
+    return {static_cast<double>(n.contacts), n.coordination, static_cast<double>(n.deep), n.largest_overlap};
   }
   void save(void const* of, std::string const& path) const override { collide::save(whole(of), path); }
   void load(void* of, std::string const& path) const override { collide::load(*static_cast<type*>(of), path); }

@@ -1,4 +1,4 @@
-// expect: collide: an effect comes after those whose result it uses: name friction after bounce
+// expect: collide: an effect comes after those whose result it uses: name friction and adhesion after bounce
 #include <collide/bucket.cuh>
 #include <collide/effects/friction.hpp>
 #include <collide/simulation.cuh>

@@ -15,7 +15,6 @@ namespace collide {
 /// it no longer touches is free.
 struct adhesion {
   using writes = columns<position, velocity, adhered>;
-  using runs_after = effects<bounce>;
   static constexpr bool needs_solid_mesh = true;  ///< an effect with `repels` is in the list, such as `bounce`
 
   double max_acceleration =

@@ -30,11 +30,10 @@ COLLIDE_HD_INLINE S force_per_change(double density, S radius, S dt) {
 /// Sums the forces with which the mesh acts on each particle in a step: mass times what its contacts change of the
 /// velocity, over dt. So it is the mean over the step, of an impact as of what rests: that is pressed by its weight.
 /// It includes what `adhesion` holds, and the pressure of particles that sleep, with all that would accelerate them.
-/// `to_host<mesh_force>()` reads it after a step, `data<mesh_force>()` is where it is. An effect for the end of the
-/// list: of those behind it it sees nothing. 3 scalars a particle.
+/// `to_host<mesh_force>()` reads it after a step, `data<mesh_force>()` is where it is. Its place in the list
+/// does not matter. 3 scalars a particle.
 struct mesh_forces {
   using writes = columns<mesh_force>;
-  using runs_after = effects<bounce, friction, spin, adhesion>;
   static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
   double density = 1;  ///< mass per volume, above 0: a particle has the mass of a solid sphere

@@ -25,10 +25,6 @@
 
 namespace collide {
 
-/// A list of effects.
-template <class... Effect>
-struct effects {};
-
 /// The smallest radii of a simulation's particles, by which effects know how long a step may be.
 struct smallest_radii {
   static constexpr int numbers = 32;  ///< of materials

@@ -12,7 +12,6 @@ namespace collide {
 struct friction {
   using writes = columns<position, velocity>;
   using optional_writes = columns<angular_velocity>;
-  using runs_after = effects<bounce>;
   static constexpr bool needs_solid_mesh = true;  ///< an effect with `repels` is in the list, such as `bounce`
 
   double static_coefficient = 0.5;   ///< of what rests: a ratio of forces, not negative

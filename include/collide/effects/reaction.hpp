@@ -41,12 +41,9 @@ struct impulse_counts {
 /// Sums up what the particles give to each body, which touch it, stick to it or sleep on it: minus mass times the
 /// change of their velocities, and minus that of their angular momentum about the origin. So both of particles and
 /// bodies together are conserved; without `spin` particles do not turn, and what would turn them goes to the body. It
-/// is made by `reaction_sums`, which has its memory. An effect for the end of the list: of those behind it it sees
-/// nothing. A contact that gives what is not finite, or 2e18 units or more, is in no sum: `reaction_sums::refused`
-/// counts it.
+/// is made by `reaction_sums`, which has its memory. Its place in the list does not matter. A contact that gives what
+/// is not finite, or 2e18 units or more, is in no sum: `reaction_sums::refused` counts it.
 struct reaction {
-  using runs_after = effects<bounce, friction, spin, adhesion>;
-
   static constexpr bool saves_parameters = false;  ///< what has been summed is not of the state that steps depend on
   static constexpr std::size_t copies = 256;       ///< of the sums, so that particles do not wait for each other
 

@@ -11,7 +11,6 @@ namespace collide {
 /// rolls: the largest torque that resists, per radius and repelling force.
 struct spin {
   using writes = columns<position, velocity, angular_velocity>;
-  using runs_after = effects<bounce>;
   static constexpr bool needs_contacts = true;  ///< with a solid mesh, or between particles
 
   double rolling_resistance = 0;  ///< a ratio of forces, not negative

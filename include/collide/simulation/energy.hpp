@@ -41,11 +41,7 @@ struct contact_counts {
   double coordination = 0;     ///< contacts of a particle, the mean of all that are alive
   std::size_t deep = 0;        ///< contacts whose overlap is above a fifth of the smaller radius: too soft
   double largest_overlap = 0;  ///< over the smaller radius
-  /// A fifth of the time in which a wave crosses the smallest sphere (Rayleigh); of `linear` and `sphere_contact` a
-  /// fifth of a collision; infinite without contacts' effects.
-  double longest_good_step = 0;
 
-  bool is_good_step(double dt) const { return dt <= longest_good_step; }  ///< not above it
   /// Throws `error` if a contact is deep.
   void require_shallow() const {
     if (deep > 0)
@@ -385,8 +381,8 @@ energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0
   return sum;
 }
 
-/// Reports how the contacts between spheres are, and which steps are short enough for them: what to look at when a
-/// scene is new. Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
+/// Reports how many contacts there are between spheres, and how deep: look at it when a scene is new. Waits, and copies
+/// columns to the host. O(n log n), and the pairs that are near along x.
 template <class Detector, class... Effect>
 contact_counts contact_report(simulation<Detector, Effect...> const& of) {
   detail::particles_on_host<Detector, Effect...> const all(of);
@@ -399,7 +395,6 @@ contact_counts contact_report(simulation<Detector, Effect...> const& of) {
   });
   auto const living = std::count_if(all.is_there.begin(), all.is_there.end(), [](auto there) { return there != 0; });
   if (living > 0) found.coordination = 2 * static_cast<double>(found.contacts) / static_cast<double>(living);
-  found.longest_good_step = 0.8 * largest_time_step(of);  // that is a quarter
   return found;
 }
 

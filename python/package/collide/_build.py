@@ -36,7 +36,7 @@ def _names(effects):
 
 
 def cache():
-    """Where compiled lists are kept: COLLIDE_CACHE, or ~/.cache/collide."""
+    """Where compiled lists are kept: COLLIDE_CACHE, else $XDG_CACHE_HOME/collide, else ~/.cache/collide."""
     base = os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache"
     return pathlib.Path(os.environ.get("COLLIDE_CACHE") or pathlib.Path(base) / "collide")
 

@@ -1,8 +1,12 @@
 /// \file
-/// Checks of `reaction` with numbers that its sums cannot hold.
+/// Checks of `reaction`: of its place in a list, and with numbers that its sums cannot hold.
 #pragma once
 
 #include <limits>
+#include <type_traits>
+#include <utility>
+
+#include <collide/effects/contact_forces.hpp>
 
 #include "simulation/bodies.hpp"
 
@@ -57,6 +61,37 @@ void check_sums_that_do_not_fit(Space const& space) {
   CHECK(many.refused == 1);  // the one that is twice as fast
   CHECK(many.said ==
         "collide: reaction_sums: a sum is more than 9e18 units: choose a larger unit, or clear more often");
+}
+
+/// The sums of `reaction` and all forces of the mesh, of particles that slide, roll and bounce, with a list of effects.
+template <class... Effect, class Space>
+auto given_to_mesh(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, double>, Effect..., moving_bodies<>>;
+  world<double> w;
+  w.radius = 0.1;
+  add_floor(w, 5, 1);
+  for (int i = 0; i < 8; ++i) w.particle(0.3 * i - 1, 0.3, 0.12, 0.5 * i, 0, -0.1 * i);
+  collide::reaction_sums sums(space, 1, 1e-12, 2);
+  auto const made_of = [&](auto effect) {
+    if constexpr (std::is_same_v<decltype(effect), collide::reaction>)
+      return sums.effect(1);
+    else
+      return effect;
+  };
+  running_bodies<simulation> made(space, w, one_body(w, {}), made_of(Effect())..., moving_bodies<>{});
+  for (int i = 0; i < 50; ++i) made.simulation.step(2e-3);
+  return std::pair(sums.counts(space), made.simulation.template to_host<collide::mesh_force>());
+}
+
+/// What reads what the mesh gives has all of it, wherever it stands in the list.
+template <class Space>
+void check_reaction_anywhere(Space const& space) {
+  using collide::reaction, collide::mesh_forces, collide::gravity, collide::bounce, collide::friction, collide::spin;
+  auto const last = given_to_mesh<gravity, bounce, friction, spin, mesh_forces, reaction>(space);
+  CHECK(last.first[0] > 0);  // friction drags the body along
+  CHECK(last.first[2] < 0);
+  CHECK(given_to_mesh<reaction, mesh_forces, gravity, bounce, friction, spin>(space) == last);
+  CHECK(given_to_mesh<spin, gravity, mesh_forces, bounce, reaction, friction>(space) == last);
 }
 
 }  // namespace tests

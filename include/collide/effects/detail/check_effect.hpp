@@ -81,8 +81,6 @@ constexpr bool check_effect() {
 }
 
 /// Properties of an effect: the mesh is solid with it; it needs that, or that or particles that meet.
-COLLIDE_MEMBER_OR(repels, repels, false)
-COLLIDE_MEMBER_OR(needs_solid_mesh, needs_solid_mesh, false)
 COLLIDE_MEMBER_OR(needs_contacts, needs_contacts, false)
 
 template <class Space, class S, class... Effect>
@@ -95,9 +93,9 @@ constexpr bool check_effects() {
   static_assert((int(is_source<Effect>) + ... + 0) <= 1,
                 "collide: a simulation has one source: give emit_from a Source that begins at several places");
   static_assert(
-      respects_order<Effect...> && follows_all_pair_contacts<S, Effect...>,
-      "collide: an effect comes after those whose result it uses: name friction after bounce, and what reads forces "
-      "(mesh_forces, pair_forces, reaction) behind what makes them");
+      follows_all_that_repel<Effect...> && follows_all_pair_contacts<S, Effect...>,
+      "collide: an effect comes after those whose result it uses: name friction and adhesion after bounce (or what "
+      "else repels), and pair_forces and contact_work after all that act between particles");
   constexpr bool is_solid = (repels<Effect> || ...), meets = (pairs_in<Effect, S> || ...);
   static_assert(is_solid || !(needs_solid_mesh<Effect> || ...),
                 "collide: friction and adhesion act where the mesh is solid: name bounce before them, or an effect of "

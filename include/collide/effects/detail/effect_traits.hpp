@@ -165,17 +165,16 @@ inline constexpr bool is_effect = [] {
   }
 }();
 
-template <class List, class E>
-inline constexpr bool names = false;
-template <class... F, class E>
-inline constexpr bool names<effects<F...>, E> = (std::is_same<F, E>::value || ...);
+/// True of an effect that makes the mesh solid, and of one that needs a solid mesh.
+COLLIDE_MEMBER_OR(repels, repels, false)
+COLLIDE_MEMBER_OR(needs_solid_mesh, needs_solid_mesh, false)
 
-/// True if no effect of the list comes before one that it follows.
+/// True if no effect of the list comes before one that makes the mesh solid, and that it needs.
 template <class... E>
-inline constexpr bool respects_order = true;
+inline constexpr bool follows_all_that_repel = true;
 template <class E, class... Later>
-inline constexpr bool respects_order<E, Later...> =
-    !(names<runs_after_of<E>, Later> || ...) && respects_order<Later...>;
+inline constexpr bool follows_all_that_repel<E, Later...> =
+    !(needs_solid_mesh<E> && (repels<Later> || ...)) && follows_all_that_repel<Later...>;
 
 /// True of an effect that looks at what others do between particles.
 COLLIDE_MEMBER_OR(follows_pair_contacts, follows_pair_contacts, false)

@@ -27,10 +27,6 @@ using optional_reads_member = typename E::optional_reads;
 template <class E>
 using optional_reads_of = detected_or<columns<>, optional_reads_member, E>;
 template <class E>
-using runs_after_member = typename E::runs_after;
-template <class E>
-using runs_after_of = detected_or<effects<>, runs_after_member, E>;
-template <class E>
 using remembers_member = typename E::remembers;
 template <class E>
 using remembers_of = typename detected_or<contact_columns<>, remembers_member, E>::list;
