@@ -1,5 +1,5 @@
 /// \file
-/// Finds every pair of a sphere (CSV) and a triangle (OBJ, or what Assimp reads) that touch. What finds them is in
+/// Finds every pair of a sphere (CSV) and a triangle (OBJ, STL, PLY, OFF or glTF) that touch. What finds them is in
 /// detect/, and compiled once for each scalar type, as CUDA where there is nvcc. Nothing here is for CUDA.
 
 #include <algorithm>
@@ -261,7 +261,7 @@ int main(int argc, char** argv) {
   auto const file = [&](char const* name, std::string& path, char const* about) {
     return app.add_option(name, path, about)->type_name("FILE");
   };
-  file("mesh", wish.mesh, "the triangles: an OBJ file, or with Assimp STL, PLY, OFF or glTF")->required();
+  file("mesh", wish.mesh, "the triangles: an OBJ, STL, PLY or OFF file, or with Assimp glTF")->required();
   file("spheres", wish.spheres, "the spheres, a CSV file with columns x, y, z and perhaps r")->required();
   app.add_option("--radius,radius", wish.radius, "radius of all spheres; a column r has precedence")->type_name("R");
   file("--output,output", wish.output, "colliding pairs (CSV), by sphere and then by triangle, ids from 0");
