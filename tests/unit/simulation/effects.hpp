@@ -29,8 +29,8 @@ using collide::slow_steps;
 using collide::sphere_contact;
 
 /// Falling with drag, from rest or thrown up: on the way, and in the end. The closed form, whatever the step.
-template <class S, class Integrator, class Space, class... Effect>
-void check_drag_of(Space const& space, collide::effects<Effect...>) {
+template <class S, class Integrator, class... Effect, class Space>
+void check_drag_of(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, Effect...>;
   double const g = 9.81, rounding = sizeof(S) == 4 ? 2e-5 : 1e-12;
   auto const velocity_after = [&](drag const& d, double thrown, std::size_t steps, double dt) {
@@ -74,10 +74,10 @@ template <class Space>
 void check_drag(Space const& space) {
   using euler = collide::semi_implicit_euler;
   using verlet = collide::velocity_verlet;
-  check_drag_of<float, euler>(space, collide::effects<gravity, drag>());
-  check_drag_of<float, verlet>(space, collide::effects<drag, gravity>());
-  check_drag_of<double, euler>(space, collide::effects<drag, gravity>());
-  check_drag_of<double, verlet>(space, collide::effects<gravity, drag>());
+  check_drag_of<float, euler, gravity, drag>(space);
+  check_drag_of<float, verlet, drag, gravity>(space);
+  check_drag_of<double, euler, drag, gravity>(space);
+  check_drag_of<double, verlet, gravity, drag>(space);
   // with a medium that does not move, too, and what sticks does so: it judges what has been resisted
   using simulation = collide::simulation<meets_mesh<Space>, bounce, collide::adhesion, drag, gravity, collide::wind<>>;
   world<float> w;
