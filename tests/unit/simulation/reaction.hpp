@@ -83,7 +83,7 @@ auto given_to_mesh(Space const& space) {
   return std::pair(sums.counts(space), made.simulation.template to_host<collide::mesh_force>());
 }
 
-/// What reads what the mesh gives has all of it, wherever it stands in the list.
+/// Effects that read the impulses of the mesh have all of them, wherever they stand in the list.
 template <class Space>
 void check_reaction_anywhere(Space const& space) {
   using collide::reaction, collide::mesh_forces, collide::gravity, collide::bounce, collide::friction, collide::spin;
