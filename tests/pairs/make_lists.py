@@ -91,6 +91,7 @@ REFUSED = {
     "friction_before_bounce": "friction or adhesion before bounce, or before an effect of a user's with `repels`",
     "spin_without_contacts": "spin without bounce, sphere_contact or an effect of a user's that does the same",
     "pair_forces_before_granular_contact": "pair_forces before an effect that acts between particles",
+    "wear_before_granular_contact": "wear before granular_contact, or without it",
     "granular_contact_with_bounce": "granular_contact beside bounce, friction, spin, adhesion or absorb, which act where "
     "particles hit the mesh",
     "granular_contact_that_sweeps": "granular_contact with karabassi_swept",

@@ -34,6 +34,7 @@ template <class Materials = one_density>
 struct wear {
   using reads = detail::union_of<columns<velocity, angular_velocity>, typename Materials::reads>;
   using writes = columns<worn_by>;
+  static constexpr bool needs_solid_mesh = true;   ///< `granular_contact` is before it in the list
   static constexpr bool begins_on_ranks = true;    ///< `begin_step` does its work whatever rank a particle is on
   static constexpr bool saves_parameters = false;  ///< they have a pointer
 

@@ -95,11 +95,13 @@ constexpr bool check_effects() {
   static_assert(
       follows_all_that_repel<Effect...> && follows_all_pair_contacts<S, Effect...>,
       "collide: an effect comes after those whose result it uses: name friction and adhesion after bounce (or what "
-      "else repels), and pair_forces and contact_work after all that act between particles");
+      "else repels), wear after granular_contact, and pair_forces and contact_work after all that act between "
+      "particles");
   constexpr bool is_solid = (repels<Effect> || ...), meets = (pairs_in<Effect, S> || ...);
-  static_assert(is_solid || !(needs_solid_mesh<Effect> || ...),
-                "collide: friction and adhesion act where the mesh is solid: name bounce before them, or an effect of "
-                "yours that says static constexpr bool repels = true");
+  static_assert(
+      is_solid || !(needs_solid_mesh<Effect> || ...),
+      "collide: friction and adhesion act where the mesh is solid, and wear where granular_contact presses: name "
+      "bounce, granular_contact, or an effect of yours with static constexpr bool repels = true, before them");
   static_assert(
       !(overlaps_in<Effect, S> || ...) ||
           !((has_on_mesh_contact<Effect, S>::value || has_after_mesh_contact<Effect, S>::value) || ...),
