@@ -219,12 +219,12 @@ def lost_motion() -> Effect:
 
 @_describes(Effect, "effects/contact_forces")
 def mesh_forces(density: float = 1) -> Effect:
-    """Forces of the mesh on each particle, last in the list: the column mesh_force."""
+    """Forces of the mesh on each particle: the column mesh_force."""
 
 
 @_describes(Effect, "effects/contact_forces")
 def pair_forces(density: float = 1) -> Effect:
-    """Forces of other particles on each particle, last in the list: the column pair_force."""
+    """Forces of other particles on each particle, after the effects that make them: the column pair_force."""
 
 
 @_describes(Effect, "effects/mass_flow", type="mass_flow<>", density="made_of.density", memory="sums.hpp")
@@ -247,7 +247,7 @@ def contact_work(density: float = 1, arm_shortening: float = 0.5) -> Effect:
 
 @_describes(Effect, memory="sums.hpp")
 def reaction(unit: float, density: float = 1, triangles: bool = False) -> Effect:
-    """Sums up what particles give to bodies and to what rests, and to each triangle if asked, last in the list:
+    """Sums up what particles give to bodies and to what rests, and to each triangle if asked:
     `Simulation.sums`. ``unit``: impulse (force times time) that each contact is rounded to; ``density``: mass per volume."""
 
 
