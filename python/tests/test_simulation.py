@@ -298,7 +298,7 @@ def test_bodies():
 
 @compiles
 def test_what_does_not_fit_together_says_so():
-    with pytest.raises(collide.Error, match="friction and adhesion act where the mesh is solid: name bounce before them"):
+    with pytest.raises(collide.Error, match="friction and adhesion act where the mesh is solid, and wear where granular_contact presses: name bounce, "):
         collide.Simulation(floor(), [collide.friction()])
 
 
