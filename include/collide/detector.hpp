@@ -118,8 +118,8 @@ class detector {
 
   /// Prepares what depends on the mesh, for spheres at rest of up to a radius. The radius is a hint: results are the
   /// same. On a device only the first query then looks at the radii, if they differ, and later ones are expected to
-  /// have such radii, too; on the host, without a memory budget, only `automatic` uses it. If the mesh changes, a
-  /// CUDA graph has the build and the query, which makes a part of the grids.
+  /// have such radii, too; on the host, without a memory budget, only `automatic` uses it. If the mesh changes,
+  /// capture `build` and the query in one CUDA graph, as the query completes the index.
   ///
   /// \param mesh    triangles in memory of the space, not copied: valid and unchanged until the last query is done
   /// \param radius  the largest usual radius, in the units of the coordinates, not negative. Larger spheres are found

@@ -15,7 +15,7 @@ namespace collide {
 /// it no longer touches is free.
 struct adhesion {
   using writes = columns<position, velocity, adhered>;
-  static constexpr bool needs_solid_mesh = true;  ///< an effect with `repels` is in the list, such as `bounce`
+  static constexpr bool needs_solid_mesh = true;  ///< an effect that `repels` is before it, such as `bounce`
 
   double max_acceleration =
       20;  ///< length per time squared, not negative, finite: what pulls harder tears the particle off

@@ -12,7 +12,7 @@ namespace collide {
 struct friction {
   using writes = columns<position, velocity>;
   using optional_writes = columns<angular_velocity>;
-  static constexpr bool needs_solid_mesh = true;  ///< an effect with `repels` is in the list, such as `bounce`
+  static constexpr bool needs_solid_mesh = true;  ///< an effect that `repels` is before it, such as `bounce`
 
   double static_coefficient = 0.5;   ///< of what rests: a ratio of forces, not negative
   double kinetic_coefficient = 0.5;  ///< of what slides: not negative, nor above that of what rests
